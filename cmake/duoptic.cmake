@@ -1,0 +1,41 @@
+# duoptic_stage(NAME [VULKAN]): adds src/stages/NAME to the library, its shader when VULKAN is given, and its test.
+# duoptic_test(NAME SOURCE [LABEL]): one GoogleTest program, one ctest entry per test program.
+
+# Warnings are errors in our own code; -ffp-contract=off because a fused multiply-add would round differently from engine to engine.
+add_library(duoptic_flags INTERFACE)
+target_compile_options(duoptic_flags INTERFACE -Wall -Wextra -Werror -ffp-contract=off)
+# g++ 12 lacks what Highway's newest baseline asks for; with EMU128 allowed the baseline is tested like every other target.
+target_compile_definitions(duoptic_flags INTERFACE HWY_BROKEN_EMU128=0)
+
+function(duoptic_shader source)
+  get_filename_component(name ${source} NAME)
+  set(out ${PROJECT_BINARY_DIR}/spirv/${name}.inc)
+  add_custom_command(OUTPUT ${out}
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/spirv
+    COMMAND ${DUO_GLSLC} -O --target-env=vulkan1.3 -I ${PROJECT_SOURCE_DIR}/src -mfmt=num -MD -MF ${out}.d -o ${out} ${source}
+    DEPENDS ${source} DEPFILE ${out}.d COMMENT "SPIR-V ${name}" VERBATIM)
+  target_sources(duoptic PRIVATE ${out})
+endfunction()
+
+function(duoptic_test name source)
+  if(NOT DUO_TESTS)
+    return()
+  endif()
+  string(REPLACE "/" "_" target ${name}_test)
+  add_executable(${target} ${source})
+  target_link_libraries(${target} PRIVATE duoptic duoptic_flags GTest::gtest_main)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
+  add_test(NAME ${name} COMMAND ${target})
+  set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: " TIMEOUT 600)
+endfunction()
+
+function(duoptic_stage name)
+  cmake_parse_arguments(ARG "VULKAN" "" "" ${ARGN})
+  set(dir ${PROJECT_SOURCE_DIR}/src/stages/${name})
+  target_sources(duoptic PRIVATE ${dir}/${name}_ref.cpp ${dir}/${name}_simd.cpp)
+  if(ARG_VULKAN AND DUO_VULKAN)
+    duoptic_shader(${dir}/${name}.comp)
+    target_sources(duoptic PRIVATE ${dir}/${name}_vk.cpp)
+  endif()
+  duoptic_test(stages/${name} ${dir}/${name}_test.cpp)
+endfunction()

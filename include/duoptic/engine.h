@@ -1,0 +1,80 @@
+// The engine turns a pair into a frame: denoise, rectify, match, check, depth.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "duoptic/frame.h"
+#include "duoptic/result.h"
+#include "duoptic/rig.h"
+
+namespace duo {
+
+enum class Denoise : std::uint8_t {
+  kAuto,      // kMedian for raw pictures (with a rig), kNone for pairs that come rectified
+  kNone,
+  kMedian,    // median 3x3
+  kGaussian,  // 5x5 binomial
+  kBoth,      // median, then Gaussian: the thesis
+};
+
+/// Which full maps the frame shall hold besides disparity.
+struct Wants {
+  bool color = false;  // the rectified left picture in colour
+  bool depth = false;  // depth_mm; needs a rig
+};
+
+struct Setup {
+  Size size;               // of each raw picture
+  std::optional<Rig> rig;  // none: the pair is taken as rectified
+  std::string matcher = "pyramid";
+  std::string preset = "default";
+  std::vector<std::pair<std::string, double>> parameters;  // override the preset's, by name (see matcher_parameters)
+  int max_disparity = 128;  // searches [0, max_disparity) px
+  bool fill = false;        // fill holes from the background
+  Denoise denoise = Denoise::kAuto;
+  Wants wants;
+  bool time_stages = false;
+};
+
+/// Turns pairs into frames. One frame is in flight: submit, collect, submit, …
+///
+/// Errors   all that can fail is in prepare(); after a failed prepare() the engine is as it was
+/// Threads  one caller
+class Engine {
+ public:
+  static constexpr int kMaxDisparity = 2048;
+  virtual ~Engine() = default;
+  virtual const char* name() const = 0;
+  virtual Result<void> prepare(const Setup& setup) = 0;
+  /// Starts work on a pair of the size given to prepare(); the pair must live until collect() returns.
+  virtual void submit(const Pair& pair) = 0;
+  /// The finished frame; it stays valid until the next submit().
+  virtual const Frame& collect() = 0;
+  /// The geometry of the frames; empty before prepare() and without a rig.
+  virtual const std::optional<Rectified>& rectified() const = 0;
+};
+
+/// Makes an engine by name: "ref" (plain loops: the definition), "simd" (fast, same bits), "auto" (the best this machine has).
+///
+/// Errors  unknown name, with the known ones
+Result<std::unique_ptr<Engine>> make_engine(std::string_view name, int threads);
+
+/// The names that Setup::matcher takes, and the presets of one of them.
+std::vector<std::string> matcher_names();
+std::vector<std::string> matcher_presets(std::string_view matcher);
+
+struct ParameterInfo {
+  std::string name, unit, help;
+  double value = 0, min = 0, max = 0;
+};
+/// Every parameter of a matcher with its value in `preset`.
+///
+/// Errors  unknown matcher or preset
+Result<std::vector<ParameterInfo>> matcher_parameters(std::string_view matcher, std::string_view preset);
+
+}  // namespace duo

@@ -1,0 +1,62 @@
+// What travels through the pipeline: pictures, pairs, and the frame that the engine makes of a pair.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "duoptic/image.h"
+#include "duoptic/rig.h"
+
+namespace duo {
+
+using TimeNs = std::int64_t;  // steady clock, nanoseconds
+
+/// One camera at one instant.
+struct Picture {
+  Image<Rgb8> pixels;
+  TimeNs t_ns = 0;
+  std::uint64_t sequence = 0;
+};
+
+/// Both cameras at one instant; the pictures have the same size.
+struct Pair {
+  Picture left, right;
+  std::uint64_t sequence = 0;
+};
+
+/// Where a disparity came from.
+enum class Origin : std::uint8_t { kNone = 0, kMeasured = 1, kFilled = 2 };
+
+/// Disparity d = x_left - x_right >= 0 of each pixel of the left picture.
+///
+/// Shape   both images H x W
+/// Units   d_q4 in 1/16 px; kNone where nothing is known
+struct Disparity {
+  static constexpr std::uint16_t kNone = 0xFFFF;  // not 0: 0 is a point at infinity
+  Image<std::uint16_t> d_q4;
+  Image<std::uint8_t> origin;  // Origin of each pixel; kNone exactly where d_q4 is kNone
+};
+
+/// Time that one stage took, summed over its calls in this frame.
+struct StageTime {
+  const char* stage = "";
+  std::int64_t wall_ns = 0;
+  std::int64_t cpu_ns = 0;  // of the whole process
+};
+
+/// All that is known of one instant; const once the engine has published it.
+///
+/// Shape   every map H x W of the rectified pair; maps that were not wanted are empty
+struct Frame {
+  std::uint64_t sequence = 0;
+  TimeNs t_ns = 0;
+  Image<std::uint8_t> left, right;            // rectified, gray, denoised: what the matcher saw
+  Image<std::uint8_t> left_inside, right_inside;  // 255 where the raw picture covers the pixel, 0 outside; empty = all inside
+  Image<Rgb8> color;                          // rectified left picture (want: color)
+  Disparity disparity;
+  Image<std::uint16_t> depth_mm;              // z in the rig frame, 0 = none (want: depth; needs a rig)
+  std::array<StageTime, 24> stages{};         // when asked for; ends at the first with wall_ns 0
+};
+
+}  // namespace duo

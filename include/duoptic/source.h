@@ -1,0 +1,51 @@
+// Sources give pictures: files now, cameras later. Pairs come from two sources or from one with both views side by side.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "duoptic/frame.h"
+#include "duoptic/result.h"
+
+namespace duo {
+
+enum class Next : std::uint8_t {
+  kPicture,  // one more
+  kEnd,      // no more
+  kCut,      // no more, but the file says there should be: it was cut short; all whole pictures were given
+};
+
+/// One camera, live or recorded.
+class Source {
+ public:
+  virtual ~Source() = default;
+  virtual Size size() const = 0;
+  /// How many pictures it will give; 0 = not known.
+  virtual std::int64_t count() const = 0;
+  /// Fills `into` with the next picture; its memory is used again when it already has the right size.
+  virtual Result<Next> next(Picture& into) = 0;
+};
+
+/// Opens a picture (PNG, JPEG, … one picture) or a video file.
+///
+/// Errors  missing, empty, not a picture or video, unreadable at its start
+Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path);
+
+/// Two views as one stream of pairs, each exactly once.
+class PairSource {
+ public:
+  virtual ~PairSource() = default;
+  virtual Size size() const = 0;  // of one view
+  virtual std::int64_t count() const = 0;
+  virtual Result<Next> next(Pair& into) = 0;
+};
+
+/// Opens LEFT and RIGHT (two pictures or two videos of the same size); an empty `right` means that `left` holds both views
+/// side by side.
+///
+/// Errors  those of open_source(); sizes differ; one is a picture and the other a video; odd width side by side
+Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right);
+
+}  // namespace duo

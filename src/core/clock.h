@@ -1,0 +1,51 @@
+// Wall and CPU clocks, and the timer that fills Frame::stages.
+#pragma once
+
+#include <ctime>
+
+#include "core/check.h"
+#include "duoptic/frame.h"
+
+namespace duo {
+
+inline std::int64_t clock_ns(clockid_t id) {
+  timespec t{};
+  clock_gettime(id, &t);
+  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+}
+inline std::int64_t wall_ns() { return clock_ns(CLOCK_MONOTONIC); }
+inline std::int64_t cpu_ns() { return clock_ns(CLOCK_PROCESS_CPUTIME_ID); }
+
+/// Adds up the time of each stage of a frame; does nothing while off.
+class StageTimer {
+ public:
+  using Times = decltype(Frame::stages);
+  void start(Times& times, bool on) {
+    times_ = on ? &times : nullptr;
+    times = {};
+    if (on) mark();
+  }
+  /// Ends the stage that ran since the last call.
+  void stage(const char* name) {
+    if (times_ == nullptr) return;
+    const std::int64_t wall = wall_ns() - wall_, cpu = cpu_ns() - cpu_;
+    for (StageTime& t : *times_) {
+      if (t.wall_ns != 0 && t.stage != name) continue;
+      t.stage = name;
+      t.wall_ns += wall > 0 ? wall : 1;
+      t.cpu_ns += cpu;
+      break;
+    }
+    mark();
+  }
+
+ private:
+  void mark() {
+    wall_ = wall_ns();
+    cpu_ = cpu_ns();
+  }
+  Times* times_ = nullptr;
+  std::int64_t wall_ = 0, cpu_ = 0;
+};
+
+}  // namespace duo

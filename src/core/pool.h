@@ -1,0 +1,50 @@
+// Pool: long-lived threads that share the rows of an image. Waits block, nothing is allocated per call.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+namespace duo {
+
+/// Runs one job at a time on `threads` threads, the caller being one of them.
+///
+/// Threads  one caller at a time
+class Pool {
+ public:
+  explicit Pool(int threads);
+  ~Pool();
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
+
+  int threads() const { return static_cast<int>(workers_.size()) + 1; }
+
+  /// Calls f(begin, end) on contiguous parts of [0, count), one part a thread, each part's start a multiple of `grain`.
+  /// Which thread runs which part must not change the result: stages write only their own rows.
+  template <class F>
+  void rows(int count, F&& f, int grain = 1) {
+    auto call = [](void* context, int begin, int end) { (*static_cast<std::remove_reference_t<F>*>(context))(begin, end); };
+    run(count, grain, call, const_cast<void*>(static_cast<const void*>(&f)));
+  }
+
+ private:
+  using Call = void (*)(void* context, int begin, int end);
+  void run(int count, int grain, Call call, void* context);
+  void run_part(int part) const;
+  void work(int part);
+
+  std::vector<std::jthread> workers_;
+  std::mutex mutex_;
+  std::condition_variable start_, done_;
+  std::uint64_t round_ = 0;
+  int busy_ = 0;
+  bool stop_ = false;
+  int count_ = 0, grain_ = 1;
+  Call call_ = nullptr;
+  void* context_ = nullptr;
+};
+
+}  // namespace duo

@@ -1,0 +1,1 @@
+# Explicit names, no glob: what is not listed is not built.

@@ -1,0 +1,2 @@
+# Explicit names, no glob: what is not listed is not built.
+duoptic_stage(median)

@@ -1,0 +1,42 @@
+// Undistort and rectify in one resampling pass, in fixed point so that every engine gives the same bits.
+#pragma once
+
+#include <cstdint>
+
+#include "core/pool.h"
+#include "duoptic/image.h"
+
+namespace duo {
+
+/// Where each pixel of the rectified picture lies in the raw one.
+///
+/// Shape   both H x W of the rectified picture
+/// Units   corner: x0 << 16 | y0, the top-left of the four raw pixels, or kOutside; fraction_q8: fx << 8 | fy
+///         0 <= x0 <= raw width - 2, 0 <= y0 <= raw height - 2 (so raw pictures are at least 2x2)
+struct ResampleMap {
+  static constexpr std::uint32_t kOutside = 0xFFFFFFFF;
+  Image<std::uint32_t> corner;
+  Image<std::uint16_t> fraction_q8;
+};
+
+// Bilinear resampling through a map.
+//
+// value = ((p00 (256-fx) + p01 fx) (256-fy) + (p10 (256-fx) + p11 fx) fy + 32768) >> 16, exact in 32 bits
+//
+// Shape    src is the raw picture; dst and inside have the map's size
+// Units    inside: 255 where the raw picture covers the pixel, 0 outside (dst is 0 there; never match on it)
+// Border   the map marks what is outside
+// Threads  rows are independent
+// Exact    ref, simd and vk agree bit for bit
+// Source   one texture-coordinate transform per pixel, as in the thesis; bilinear with 8-bit weights
+namespace ref {
+void rectify(View<const std::uint8_t> src, const ResampleMap& map, View<std::uint8_t> dst, View<std::uint8_t> inside);
+}
+namespace simd {
+void rectify(Pool& pool, View<const std::uint8_t> src, const ResampleMap& map, View<std::uint8_t> dst,
+             View<std::uint8_t> inside);
+/// Colour for display and clouds only: no engine computes with it.
+void rectify(Pool& pool, View<const Rgb8> src, const ResampleMap& map, View<Rgb8> dst);
+}  // namespace simd
+
+}  // namespace duo
