@@ -1,2 +1,5 @@
 # Explicit names, no glob: what is not listed is not built.
+duoptic_stage(gray)
 duoptic_stage(median)
+duoptic_stage(gaussian)
+duoptic_stage(halve)
