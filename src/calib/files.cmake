@@ -1,1 +1,4 @@
 # Explicit names, no glob: what is not listed is not built.
+set(dir ${PROJECT_SOURCE_DIR}/src/calib)
+target_sources(duoptic PRIVATE ${dir}/rig.cpp ${dir}/rig_check.cpp ${dir}/rig_json.cpp ${dir}/rig_opencv.cpp)
+duoptic_test(calib/rig ${dir}/rig_test.cpp)

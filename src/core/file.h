@@ -1,0 +1,24 @@
+// Whole files: read with a limit, written so that a reader never sees a half.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "duoptic/result.h"
+
+namespace duo {
+
+/// The bytes of a file. `what` names its kind in messages ("rig", "PFM picture").
+///
+/// Errors  missing, not readable, a folder, more than `limit` bytes
+Result<std::string> read_file(const std::filesystem::path& path, std::size_t limit, std::string_view what);
+
+/// Makes `bytes` the content of `path`. They go to a hidden file beside it, are flushed to the disk, and take the name at the
+/// end: after any failure the name holds what it held before and nothing else is left.
+///
+/// Errors  no such folder, no permission, disk full, the name belongs to something that is not a file
+Result<void> write_file(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace duo
