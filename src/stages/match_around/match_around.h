@@ -26,8 +26,8 @@ namespace duo {
 /// Source   thesis step 2; Birchfield, Tomasi, "A pixel dissimilarity measure that is insensitive to image sampling", 1998,
 ///          with the two half-way values tried one by one instead of their interval
 struct MatchAround {
-  View<const std::uint8_t> left, right, left_inside, right_inside;
-  View<const std::int16_t> coarser;
+  View<const std::uint8_t> left = {}, right = {}, left_inside = {}, right_inside = {};
+  View<const std::int16_t> coarser = {};
   int radius = 0;
 };
 
@@ -36,7 +36,17 @@ namespace ref {
 void match_around(const MatchAround& in, View<std::int16_t> dst, std::int64_t* comparisons = nullptr);
 }
 namespace simd {
-void match_around(Pool& pool, const MatchAround& in, View<std::int16_t> dst);
-}
+/// Right rows as the kernel wants them: mirrored, so that rising disparity is contiguous, and continued at both ends.
+struct MatchAroundScratch {
+  static constexpr int kPad = 64;  // >= the candidates of one step, so that a start past the ends sees edge pixels only
+  Image<std::uint8_t> right, half, outside;
+  static Size size_for(Size picture) { return {picture.width + 2 * kPad, picture.height}; }
+  explicit MatchAroundScratch(Size picture = {}) {
+    if (!picture.empty()) right = Image<std::uint8_t>(size_for(picture)), half = right.clone(), outside = right.clone();
+  }
+};
+/// Precondition: radius <= 15 when there is a coarser level.
+void match_around(Pool& pool, const MatchAround& in, MatchAroundScratch& scratch, View<std::int16_t> dst);
+}  // namespace simd
 
 }  // namespace duo

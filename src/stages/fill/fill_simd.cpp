@@ -1,0 +1,36 @@
+// One pass over each row: holes come in runs, and a run has one answer. Nothing here is worth vectors.
+
+#include <algorithm>
+
+#include "core/check.h"
+#include "stages/fill/fill.h"
+
+namespace duo::simd {
+
+void fill(Pool& pool, View<std::uint16_t> d_q4, View<std::uint8_t> origin) {
+  DUO_CHECK(d_q4.size() == origin.size());
+  const int w = d_q4.width();
+  pool.rows(d_q4.height(), [&](int y_begin, int y_end) {
+    for (int y = y_begin; y < y_end; ++y) {
+      std::uint16_t* d = d_q4.row(y);
+      std::uint8_t* from = origin.row(y);
+      std::uint16_t before = Disparity::kNone;
+      for (int x = 0; x < w;) {
+        if (from[x] != static_cast<std::uint8_t>(Origin::kNone)) {
+          before = d[x++];
+          continue;
+        }
+        int end = x;
+        while (end < w && from[end] == static_cast<std::uint8_t>(Origin::kNone)) ++end;
+        const std::uint16_t value = std::min(before, end < w ? d[end] : Disparity::kNone);
+        if (value != Disparity::kNone) {
+          std::fill(d + x, d + end, value);
+          std::fill(from + x, from + end, static_cast<std::uint8_t>(Origin::kFilled));
+        }
+        x = end;
+      }
+    }
+  });
+}
+
+}  // namespace duo::simd
