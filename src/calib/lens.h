@@ -1,0 +1,44 @@
+// The lens of one raw camera: rays to pixels and back.
+#pragma once
+
+#include <optional>
+
+#include "duoptic/rig.h"
+
+namespace duo {
+
+struct Vec2 {
+  double x = 0, y = 0;
+  friend bool operator==(const Vec2&, const Vec2&) = default;
+};
+
+/// A camera's distortion in both directions.
+///
+/// Far from the axis a distortion polynomial can turn back, so that two rays meet in one pixel; rays from the first turning
+/// point on are not seen.
+class Lens {
+ public:
+  explicit Lens(const Camera& camera);
+
+  const Camera& camera() const { return camera_; }
+
+  /// Tangent of the angle between the axis and the last rays that are seen.
+  double max_tangent() const { return max_tangent_; }
+
+  /// The pixel that sees a point or ray; none behind the camera or beyond the turning point. May lie outside the picture.
+  std::optional<Vec2> pixel_of(Vec3 p_in_camera) const;
+
+  /// The ray (z = 1) that a pixel sees; none where no ray reaches it.
+  std::optional<Vec3> ray_of(Vec2 pixel_px) const;
+
+  /// Whether the picture has pixels all around the place, so that it can be interpolated.
+  bool covers(Vec2 pixel_px) const {
+    return pixel_px.x >= 0 && pixel_px.y >= 0 && pixel_px.x <= camera_.size.width - 1 && pixel_px.y <= camera_.size.height - 1;
+  }
+
+ private:
+  Camera camera_;
+  double max_tangent_;
+};
+
+}  // namespace duo

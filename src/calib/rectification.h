@@ -1,0 +1,42 @@
+// Rectification: from a rig to one geometry in which a point lies on the same row of both pictures.
+#pragma once
+
+#include <optional>
+
+#include "calib/lens.h"
+#include "duoptic/rig.h"
+#include "stages/rectify/rectify.h"
+
+namespace duo {
+
+struct Rectification {
+  Rectified geometry;
+  ResampleMap left, right;
+};
+
+/// The rectified geometry of a rig, and the maps that resample both raw pictures into it.
+///
+/// The x axis lies along the baseline, z is the mean of both optical axes made orthogonal to it. The focal length is the mean
+/// of the raw ones. The canvas keeps every pixel of a point at 0.4 m or further that both raw pictures see; the maps mark the
+/// rest of it as outside. A canvas that would pass 1.5 times the raw size gets a shorter focal length instead, down to half.
+///
+/// Errors  what check_rig() refuses; views without common part, or so far from parallel (or so wide) that half the focal length
+/// is not short enough Source  Fusiello, Trucco, Verri, "A compact algorithm for rectification of stereo pairs", 2000; there
+/// the z axis follows
+///         one camera, here both share the turn
+Result<Rectification> make_rectification(const Rig& rig, const std::string& name);
+
+/// The point in the rig frame (metres) that a rectified left pixel with disparity d > 0 shows.
+inline Vec3 point_of(const Rectified& geometry, double x_px, double y_px, double d_px) {
+  const double z_m = geometry.focal_px * geometry.baseline_m / d_px;
+  return {(x_px - geometry.cx_px) * z_m / geometry.focal_px, (y_px - geometry.cy_px) * z_m / geometry.focal_px, z_m};
+}
+
+/// Where a raw pixel lies on the canvas; `rig_from_camera` says which camera. None where the lens sees no ray, or behind.
+std::optional<Vec2> rectified_from_raw(const Rectified& geometry, const Mat3& rig_from_camera, const Lens& lens, Vec2 raw_px);
+
+/// Where a canvas pixel lies in the raw picture; may be outside of it.
+std::optional<Vec2> raw_from_rectified(const Rectified& geometry, const Mat3& rig_from_camera, const Lens& lens,
+                                       Vec2 rectified_px);
+
+}  // namespace duo
