@@ -24,6 +24,8 @@ class Source {
   virtual Size size() const = 0;
   /// How many pictures it will give; 0 = not known.
   virtual std::int64_t count() const = 0;
+  /// True for one picture, false for a stream of them.
+  virtual bool still() const = 0;
   /// Fills `into` with the next picture; its memory is used again when it already has the right size.
   virtual Result<Next> next(Picture& into) = 0;
 };
@@ -39,7 +41,10 @@ class PairSource {
   virtual ~PairSource() = default;
   virtual Size size() const = 0;  // of one view
   virtual std::int64_t count() const = 0;
+  virtual bool still() const = 0;
   virtual Result<Next> next(Pair& into) = 0;
+  /// After the end: why the stream ended before its files did (one was cut short, or is shorter); empty when it did not.
+  virtual std::string warning() const = 0;
 };
 
 /// Opens LEFT and RIGHT (two pictures or two videos of the same size); an empty `right` means that `left` holds both views

@@ -1,1 +1,11 @@
 # Explicit names, no glob: what is not listed is not built.
+# Pictures and videos through libav itself: it tells whole pictures from partly decoded ones, and prints nothing by itself.
+pkg_check_modules(LIBAV REQUIRED IMPORTED_TARGET libavformat libavcodec libswscale libavutil)
+target_link_libraries(duoptic PRIVATE PkgConfig::LIBAV)
+target_sources(duoptic PRIVATE
+  ${PROJECT_SOURCE_DIR}/src/sources/files.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/libav.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/pairs.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/pictures.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/video.cpp)
+duoptic_test(sources/files ${PROJECT_SOURCE_DIR}/src/sources/files_test.cpp)

@@ -1,0 +1,38 @@
+// open_source(): which kind of file it is, and every way in which it cannot be read at all.
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <system_error>
+
+#include "duoptic/source.h"
+#include "sources/libav.h"
+#include "sources/pictures.h"
+#include "sources/video.h"
+
+namespace duo {
+
+Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status))
+    return Error{ErrorCode::kNotFound,
+                 fmt::format("cannot read {}: {}", name.empty() ? "''" : name,
+                             error && error != std::errc::no_such_file_or_directory ? error.message() : "no such file")};
+  if (!std::filesystem::is_regular_file(status))
+    return Error{ErrorCode::kBadInput, fmt::format("cannot read {}: it is not a file; give a picture or a video", name)};
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return Error{ErrorCode::kBadInput, fmt::format("cannot read {}: {}", name, std::strerror(errno))};
+  std::string head(kPictureMagicBytes, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  if (head.empty()) return Error{ErrorCode::kBadInput, fmt::format("cannot read {}: the file is empty", name)};
+  av_log_set_level(AV_LOG_QUIET);  // what is wrong is said in our results
+  return is_picture(head) ? open_picture(path) : open_video(path);
+}
+
+}  // namespace duo

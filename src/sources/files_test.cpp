@@ -1,0 +1,331 @@
+// Files written here with libav's encoders are read back whole, then cut at many bytes: a cut picture is an error, a cut
+// video gives exactly its first whole pictures and says that it was cut, or is an error when none is left.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "duoptic/source.h"
+#include "sources/libav.h"
+
+extern "C" {
+#include <libavutil/imgutils.h>
+#include <libavutil/opt.h>
+}
+
+namespace duo {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int kFrames = 12;
+constexpr Size kSize{64, 48};
+
+class TempFolder {
+ public:
+  TempFolder() {
+    std::string name = (fs::temp_directory_path() / "duoptic_files_XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~TempFolder() { fs::remove_all(path_); }
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  fs::path path_;
+};
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+void put(const fs::path& path, std::string_view bytes) { std::ofstream(path, std::ios::binary) << bytes; }
+
+/// A moving pattern with something in every byte of every plane.
+av::DecodedFrame pattern(AVPixelFormat format, int t) {
+  av::DecodedFrame frame(av_frame_alloc());
+  frame->format = format;
+  frame->width = kSize.width;
+  frame->height = kSize.height;
+  frame->pts = t;
+  EXPECT_GE(av_frame_get_buffer(frame.get(), 0), 0);
+  for (int plane = 0; plane < 4 && frame->data[plane] != nullptr; ++plane) {
+    const bool halved = plane > 0 && (format == AV_PIX_FMT_YUVJ420P || format == AV_PIX_FMT_YUV420P);
+    const int height = halved ? kSize.height / 2 : kSize.height;
+    const int width = av_image_get_linesize(format, kSize.width, plane);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        frame->data[plane][y * frame->linesize[plane] + x] = static_cast<std::uint8_t>(x * 5 + y * 3 + t * 7 + ((x * y) & 31));
+  }
+  return frame;
+}
+
+struct Encoder {
+  av::Decoder context;  // the owner fits encoders too
+  void encode(const AVFrame* frame, const std::function<void(AVPacket&)>& write) {
+    ASSERT_GE(avcodec_send_frame(context.get(), frame), 0);
+    const av::Packet packet(av_packet_alloc());
+    while (avcodec_receive_packet(context.get(), packet.get()) >= 0) {
+      write(*packet);
+      av_packet_unref(packet.get());
+    }
+  }
+};
+
+Encoder make_encoder(AVCodecID id, AVPixelFormat format, int b_frames = 0, bool global_header = false) {
+  const AVCodec* codec = avcodec_find_encoder(id);
+  Encoder encoder{av::Decoder(avcodec_alloc_context3(codec))};
+  AVCodecContext& c = *encoder.context;
+  c.width = kSize.width;
+  c.height = kSize.height;
+  c.pix_fmt = format;
+  c.color_range = format == AV_PIX_FMT_YUVJ420P ? AVCOL_RANGE_JPEG : AVCOL_RANGE_UNSPECIFIED;
+  c.time_base = {1, 30};
+  c.framerate = {30, 1};
+  c.max_b_frames = b_frames;
+  c.bit_rate = 400'000;
+  c.strict_std_compliance = FF_COMPLIANCE_UNOFFICIAL;
+  if (global_header) c.flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+  EXPECT_GE(avcodec_open2(&c, codec, nullptr), 0);
+  return encoder;
+}
+
+void write_picture(const fs::path& path, AVCodecID id, AVPixelFormat format) {
+  Encoder encoder = make_encoder(id, format);
+  const av::DecodedFrame frame = pattern(format, 0);
+  encoder.encode(frame.get(), [&](AVPacket& p) {
+    put(path, {reinterpret_cast<char*>(p.data), static_cast<std::size_t>(p.size)});
+  });
+}
+
+void write_video(const fs::path& path, AVCodecID id, AVPixelFormat format, int b_frames, const char* movflags = nullptr) {
+  AVFormatContext* muxer = nullptr;
+  ASSERT_GE(avformat_alloc_output_context2(&muxer, nullptr, nullptr, path.c_str()), 0);
+  Encoder encoder = make_encoder(id, format, b_frames, (muxer->oformat->flags & AVFMT_GLOBALHEADER) != 0);
+  AVStream* stream = avformat_new_stream(muxer, nullptr);
+  stream->time_base = {1, 30};
+  stream->avg_frame_rate = {30, 1};
+  avcodec_parameters_from_context(stream->codecpar, encoder.context.get());
+  if (movflags != nullptr) av_opt_set(muxer->priv_data, "movflags", movflags, 0);
+  ASSERT_GE(avio_open(&muxer->pb, path.c_str(), AVIO_FLAG_WRITE), 0);
+  ASSERT_GE(avformat_write_header(muxer, nullptr), 0);
+  const auto write = [&](AVPacket& packet) {
+    if (packet.duration == 0) packet.duration = 1;
+    av_packet_rescale_ts(&packet, {1, 30}, stream->time_base);
+    ASSERT_GE(av_interleaved_write_frame(muxer, &packet), 0);
+  };
+  for (int t = 0; t < kFrames; ++t) encoder.encode(pattern(format, t).get(), write);
+  encoder.encode(nullptr, write);
+  ASSERT_GE(av_write_trailer(muxer), 0);
+  avio_closep(&muxer->pb);
+  avformat_free_context(muxer);
+}
+
+struct Read {
+  bool opened = false;
+  Next end = Next::kPicture;
+  std::vector<std::vector<Rgb8>> pictures;
+  std::string error;
+};
+
+Read read_all(const fs::path& path) {
+  Read out;
+  auto source = open_source(path);
+  if (!source) {
+    out.error = source.error().what;
+    return out;
+  }
+  out.opened = true;
+  Picture picture;
+  while (true) {
+    const auto next = (*source)->next(picture);
+    if (!next) {
+      out.error = next.error().what;
+      return out;
+    }
+    out.end = *next;
+    if (*next != Next::kPicture) return out;
+    auto& pixels = out.pictures.emplace_back();
+    for (int y = 0; y < picture.pixels.height(); ++y)
+      pixels.insert(pixels.end(), picture.pixels.row(y), picture.pixels.row(y) + picture.pixels.width());
+  }
+}
+
+struct PictureCase {
+  const char* name;
+  AVCodecID codec;
+  AVPixelFormat format;
+};
+const PictureCase kPictures[] = {
+    {"rgb.png", AV_CODEC_ID_PNG, AV_PIX_FMT_RGB24},     {"gray.png", AV_CODEC_ID_PNG, AV_PIX_FMT_GRAY8},
+    {"rgba.png", AV_CODEC_ID_PNG, AV_PIX_FMT_RGBA},     {"gray16.png", AV_CODEC_ID_PNG, AV_PIX_FMT_GRAY16BE},
+    {"rgb48.png", AV_CODEC_ID_PNG, AV_PIX_FMT_RGB48BE}, {"yuv.jpg", AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P},
+    {"rgb.bmp", AV_CODEC_ID_BMP, AV_PIX_FMT_BGR24},     {"rgb.tif", AV_CODEC_ID_TIFF, AV_PIX_FMT_RGB24},
+    {"rgb.ppm", AV_CODEC_ID_PPM, AV_PIX_FMT_RGB24},     {"gray.pgm", AV_CODEC_ID_PGM, AV_PIX_FMT_GRAY8},
+};
+
+std::uint8_t byte_at(const AVFrame& frame, int y, int offset) { return frame.data[0][y * frame.linesize[0] + offset]; }
+
+TEST(Pictures, EveryKindIsReadWithItsValues) {
+  const TempFolder dir;
+  for (const PictureCase& c : kPictures) {
+    SCOPED_TRACE(c.name);
+    write_picture(dir / c.name, c.codec, c.format);
+    const Read read = read_all(dir / c.name);
+    ASSERT_TRUE(read.opened) << read.error;
+    ASSERT_EQ(read.pictures.size(), 1u);
+    EXPECT_EQ(read.end, Next::kEnd);
+    if (c.codec == AV_CODEC_ID_MJPEG) continue;  // lossy
+    const av::DecodedFrame truth = pattern(c.format, 0);
+    for (int y = 0; y < kSize.height; ++y)
+      for (int x = 0; x < kSize.width; ++x) {
+        const Rgb8 got = read.pictures[0][static_cast<std::size_t>(y * kSize.width + x)];
+        const auto at = [&](int offset) { return byte_at(*truth, y, offset); };
+        switch (c.format) {
+          case AV_PIX_FMT_RGB24:
+            ASSERT_EQ(got, (Rgb8{at(3 * x), at(3 * x + 1), at(3 * x + 2)})) << y << ' ' << x;
+            break;
+          case AV_PIX_FMT_BGR24:
+            ASSERT_EQ(got, (Rgb8{at(3 * x + 2), at(3 * x + 1), at(3 * x)})) << y << ' ' << x;
+            break;
+          case AV_PIX_FMT_RGBA:
+            ASSERT_EQ(got, (Rgb8{at(4 * x), at(4 * x + 1), at(4 * x + 2)})) << y << ' ' << x;
+            break;
+          case AV_PIX_FMT_GRAY8:
+            ASSERT_EQ(got, (Rgb8{at(x), at(x), at(x)})) << y << ' ' << x;
+            break;
+          case AV_PIX_FMT_GRAY16BE:
+            ASSERT_EQ(got, (Rgb8{at(2 * x), at(2 * x), at(2 * x)})) << y << ' ' << x;
+            break;
+          default:
+            ASSERT_NEAR(got.g, at(6 * x + 2), 1) << y << ' ' << x;
+        }
+      }
+  }
+}
+
+TEST(Pictures, CutAnywhereIsAnError) {
+  const TempFolder dir;
+  for (const PictureCase& c : kPictures) {
+    SCOPED_TRACE(c.name);
+    write_picture(dir / c.name, c.codec, c.format);
+    const std::string whole = bytes_of(dir / c.name);
+    for (int i = 1; i < 40; ++i) {
+      const std::size_t keep = whole.size() * static_cast<std::size_t>(i) / 40;
+      put(dir / "cut", std::string_view(whole).substr(0, keep));
+      const Read read = read_all(dir / "cut");
+      EXPECT_FALSE(read.opened) << keep << " of " << whole.size() << " bytes";
+      EXPECT_EQ(read.error.find('\n'), std::string::npos);
+    }
+  }
+}
+
+struct VideoCase {
+  const char* name;
+  AVCodecID codec;
+  AVPixelFormat format;
+  int b_frames;
+  const char* movflags;
+};
+const VideoCase kVideos[] = {
+    {"mjpeg.avi", AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P, 0, nullptr},
+    {"mjpeg.mkv", AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P, 0, nullptr},
+    {"mpeg4.avi", AV_CODEC_ID_MPEG4, AV_PIX_FMT_YUV420P, 0, nullptr},
+    {"b_frames.mkv", AV_CODEC_ID_MPEG4, AV_PIX_FMT_YUV420P, 2, nullptr},
+    {"index_last.mp4", AV_CODEC_ID_MPEG4, AV_PIX_FMT_YUV420P, 2, nullptr},
+    {"index_first.mp4", AV_CODEC_ID_MPEG4, AV_PIX_FMT_YUV420P, 2, "faststart"},
+};
+
+TEST(Videos, EveryPictureOnce) {
+  const TempFolder dir;
+  for (const VideoCase& c : kVideos) {
+    SCOPED_TRACE(c.name);
+    write_video(dir / c.name, c.codec, c.format, c.b_frames, c.movflags);
+    const Read read = read_all(dir / c.name);
+    ASSERT_TRUE(read.opened) << read.error;
+    EXPECT_EQ(read.pictures.size(), static_cast<std::size_t>(kFrames));
+    EXPECT_EQ(read.end, Next::kEnd);
+    for (std::size_t i = 1; i < read.pictures.size(); ++i) EXPECT_NE(read.pictures[i], read.pictures[i - 1]) << i;
+  }
+}
+
+TEST(Videos, CutGivesItsWholePicturesAndSaysSo) {
+  const TempFolder dir;
+  for (const VideoCase& c : kVideos) {
+    SCOPED_TRACE(c.name);
+    write_video(dir / c.name, c.codec, c.format, c.b_frames, c.movflags);
+    const std::string bytes = bytes_of(dir / c.name);
+    const Read whole = read_all(dir / c.name);
+    std::size_t cuts_seen = 0;
+    for (std::size_t keep = 1; keep < bytes.size(); keep += bytes.size() / 97 + 1) {
+      put(dir / "cut", std::string_view(bytes).substr(0, keep));
+      const Read read = read_all(dir / "cut");
+      if (!read.opened) continue;
+      ASSERT_LE(read.pictures.size(), whole.pictures.size()) << keep;
+      for (std::size_t i = 0; i < read.pictures.size(); ++i)
+        ASSERT_EQ(read.pictures[i], whole.pictures[i]) << keep << " bytes, picture " << i;
+      if (read.pictures.size() < whole.pictures.size()) {
+        EXPECT_EQ(read.end, Next::kCut) << keep << " bytes, " << read.pictures.size() << " pictures";
+        ++cuts_seen;
+      }
+    }
+    // Without its index, which comes last, an MP4 cannot be read at all.
+    if (std::string(c.name) == "index_last.mp4")
+      EXPECT_EQ(cuts_seen, 0u);
+    else
+      EXPECT_GE(cuts_seen, 20u);
+  }
+}
+
+TEST(Files, WhatCannotBeUsedIsOneClearLine) {
+  const TempFolder dir;
+  put(dir / "empty.png", "");
+  put(dir / "text.txt", "not a picture at all, only words that go on for a while\n");
+  put(dir / "list.m3u8", "#EXTM3U\n#EXTINF:1,\n/etc/hostname\n");
+  for (const char* name : {"missing.png", "empty.png", "text.txt", "list.m3u8", "."}) {
+    const Read read = read_all(dir / name);
+    EXPECT_FALSE(read.opened) << name;
+    EXPECT_NE(read.error.find(name), std::string::npos) << read.error;
+    EXPECT_EQ(read.error.find('\n'), std::string::npos) << read.error;
+  }
+}
+
+TEST(Pairs, SideBySideAndRefusals) {
+  const TempFolder dir;
+  write_picture(dir / "a.png", AV_CODEC_ID_PNG, AV_PIX_FMT_RGB24);
+  write_video(dir / "v.avi", AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P, 0);
+  auto both = open_pairs(dir / "a.png", {});
+  ASSERT_TRUE(both);
+  EXPECT_EQ((*both)->size(), (Size{kSize.width / 2, kSize.height}));
+  Pair pair;
+  ASSERT_TRUE((*both)->next(pair));
+  const auto whole = read_all(dir / "a.png").pictures[0];
+  EXPECT_EQ(pair.left.pixels.at(5, 3), whole[5 * kSize.width + 3]);
+  EXPECT_EQ(pair.right.pixels.at(5, 3), whole[5 * kSize.width + 3 + kSize.width / 2]);
+  EXPECT_FALSE(open_pairs(dir / "a.png", dir / "v.avi"));
+  put(dir / "small.pgm", "P5\n3 2\n255\n......");
+  EXPECT_FALSE(open_pairs(dir / "a.png", dir / "small.pgm"));
+  EXPECT_FALSE(open_pairs(dir / "small.pgm", {}));
+}
+
+TEST(Pairs, CutAndShorterFilesAreNamed) {
+  const TempFolder dir;
+  write_video(dir / "v.avi", AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P, 0);
+  const std::string bytes = bytes_of(dir / "v.avi");
+  put(dir / "cut.avi", std::string_view(bytes).substr(0, bytes.size() / 2));
+  auto pairs = open_pairs(dir / "v.avi", dir / "cut.avi");
+  ASSERT_TRUE(pairs);
+  Pair pair;
+  int given = 0;
+  auto next = (*pairs)->next(pair);
+  for (; next && *next == Next::kPicture; next = (*pairs)->next(pair)) ++given;
+  ASSERT_TRUE(next);
+  EXPECT_EQ(*next, Next::kCut);
+  EXPECT_GT(given, 0);
+  EXPECT_LT(given, kFrames);
+  EXPECT_NE((*pairs)->warning().find("cut.avi"), std::string::npos) << (*pairs)->warning();
+}
+
+}  // namespace
+}  // namespace duo

@@ -1,0 +1,191 @@
+#include "sources/video.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "sources/libav.h"
+
+namespace duo {
+namespace {
+
+// Containers that hold nothing but their own bytes: play lists and the like could reach other files or the network.
+constexpr char kContainers[] = "avi,matroska,webm,mov,mp4,mpegts,mpeg";
+
+Error unreadable(const std::filesystem::path& path, const std::string& why) {
+  return Error{ErrorCode::kBadInput, fmt::format("cannot read video {}: {}", path.string(), why)};
+}
+
+/// A time in `base` as nanoseconds; 0 when it is not known.
+TimeNs to_ns(std::int64_t t, AVRational base) {
+  return t == AV_NOPTS_VALUE ? 0 : av_rescale_q(t, base, AVRational{1, 1'000'000'000});
+}
+
+class VideoFile final : public Source {
+ public:
+  Result<void> open(const std::filesystem::path& path);
+  Size size() const override { return size_; }
+  std::int64_t count() const override { return announced_; }
+  bool still() const override { return false; }
+  Result<Next> next(Picture& into) override;
+
+ private:
+  enum class Decoded { kFrame, kEnd, kCut };
+  Decoded decode();
+  Decoded end_of_file() const;
+  bool follows();
+  std::int64_t announced_packets() const;
+  TimeNs announced_end_ns() const;
+  TimeNs frame_ns() const {
+    const AVRational rate = stream().avg_frame_rate;
+    return rate.num > 0 && rate.den > 0 ? to_ns(1, av_inv_q(rate)) : 40'000'000;
+  }
+  const AVStream& stream() const { return *container_->streams[stream_]; }
+
+  std::string name_;
+  av::Container container_;
+  av::Decoder decoder_;
+  av::DecodedFrame frame_{av_frame_alloc()};
+  av::Packet packet_{av_packet_alloc()};
+  av::ToRgb to_rgb_;
+  int stream_ = -1;
+  Size size_;
+  std::int64_t announced_ = 0;  // packets; 0 = not announced
+  std::int64_t packets_ = 0;    // whole ones read so far
+  TimeNs shown_ns_ = 0;         // time of the last picture decoded
+  TimeNs end_ns_ = 0;           // where the last packet ends
+  std::uint64_t given_ = 0;
+  bool drained_ = false;  // the decoder was told that nothing follows
+  bool cut_ = false;
+  bool pending_ = false;  // frame_ holds a picture that next() has not given yet
+};
+
+Result<void> VideoFile::open(const std::filesystem::path& path) {
+  name_ = path.string();
+  AVFormatContext* context = avformat_alloc_context();
+  if (context == nullptr || !frame_ || !packet_) return unreadable(path, "out of memory");
+  context->format_whitelist = av_strdup(kContainers);
+  context->protocol_whitelist = av_strdup("file");
+  // Frees the context itself when it fails.
+  if (const int e = avformat_open_input(&context, ("file:" + name_).c_str(), nullptr, nullptr); e < 0)
+    return unreadable(path, "it is no picture or video that can be read, or it was cut before its index was written");
+  container_.reset(context);
+  if (const int e = avformat_find_stream_info(context, nullptr); e < 0) return unreadable(path, av::reason(e));
+  stream_ = av_find_best_stream(context, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  if (stream_ < 0) return unreadable(path, "it holds no video");
+  for (unsigned i = 0; i < context->nb_streams; ++i)
+    context->streams[i]->discard = static_cast<int>(i) == stream_ ? AVDISCARD_DEFAULT : AVDISCARD_ALL;
+  decoder_ = av::open_decoder(stream().codecpar->codec_id, [this](AVCodecContext& decoder) {
+    decoder.pkt_timebase = stream().time_base;
+    return avcodec_parameters_to_context(&decoder, stream().codecpar) >= 0;
+  });
+  if (!decoder_)
+    return Error{ErrorCode::kUnsupported,
+                 fmt::format("cannot read video {}: no decoder for {}", name_, avcodec_get_name(stream().codecpar->codec_id))};
+  announced_ = announced_packets();
+  if (decode() != Decoded::kFrame) return unreadable(path, "no whole picture at its start");
+  pending_ = true;
+  size_ = {frame_->width, frame_->height};
+  return {};
+}
+
+/// What the container says of its length: exact in AVI's header and MP4's index.
+std::int64_t VideoFile::announced_packets() const {
+  const bool indexed = std::strstr(container_->iformat->name, "mp4") != nullptr;
+  // MP4: the index that the demuxer keeps leaves out what an edit list cuts away; nb_frames does not.
+  const std::int64_t in_index = indexed ? avformat_index_get_entries_count(&stream()) : 0;
+  return in_index > 0 ? in_index : std::max<std::int64_t>(stream().nb_frames, 0);
+}
+
+/// Where the video stream should end by the container's durations; 0 when it does not say.
+TimeNs VideoFile::announced_end_ns() const {
+  const AVStream& s = stream();
+  const TimeNs start = to_ns(s.start_time, s.time_base);
+  if (s.duration > 0) return start + to_ns(s.duration, s.time_base);
+  if (std::strstr(container_->iformat->name, "matroska") == nullptr) return 0;  // elsewhere an estimate from the file size
+  if (const AVDictionaryEntry* tag = av_dict_get(s.metadata, "DURATION", nullptr, 0); tag != nullptr) {
+    int hours = 0, minutes = 0;
+    double seconds = 0;
+    if (std::sscanf(tag->value, "%d:%d:%lf", &hours, &minutes, &seconds) == 3)
+      return std::llround((hours * 3600 + minutes * 60 + seconds) * 1e9);
+  }
+  // The container's own duration is the longest stream's: ours only when it is alone.
+  return container_->nb_streams == 1 && container_->duration > 0 ? start + container_->duration * 1000 : 0;
+}
+
+VideoFile::Decoded VideoFile::end_of_file() const {
+  if (cut_ || packets_ < announced_) return Decoded::kCut;
+  const TimeNs announced_end = announced_ > 0 ? 0 : announced_end_ns();
+  // Half a picture of tolerance: containers round durations to milliseconds.
+  return announced_end > 0 && end_ns_ < announced_end - frame_ns() / 2 ? Decoded::kCut : Decoded::kEnd;
+}
+
+/// False for a picture after a hole: with B pictures a file cut may hold one whose predecessors in time were to come later.
+bool VideoFile::follows() {
+  const TimeNs t = to_ns(frame_->best_effort_timestamp, stream().time_base);
+  const bool hole = drained_ && decoder_->has_b_frames > 0 && t > shown_ns_ + frame_ns() * 3 / 2;
+  shown_ns_ = t;
+  return !hole;
+}
+
+/// Decodes the next whole picture into frame_.
+VideoFile::Decoded VideoFile::decode() {
+  while (true) {
+    const int received = avcodec_receive_frame(decoder_.get(), frame_.get());
+    if (received == AVERROR_EOF) return end_of_file();
+    if (received >= 0 && !av::is_damaged(*frame_) && follows()) return Decoded::kFrame;
+    if (received != AVERROR(EAGAIN)) return cut_ = true, Decoded::kCut;
+    if (drained_) return Decoded::kCut;
+
+    const int read = av_read_frame(container_.get(), packet_.get());
+    const bool whole = read >= 0 && (packet_->flags & AV_PKT_FLAG_CORRUPT) == 0;
+    if (whole && packet_->stream_index != stream_) {
+      av_packet_unref(packet_.get());
+      continue;
+    }
+    if (whole) {
+      ++packets_;
+      const std::int64_t start = packet_->pts != AV_NOPTS_VALUE ? packet_->pts : packet_->dts;
+      const TimeNs duration = packet_->duration > 0 ? to_ns(packet_->duration, stream().time_base) : frame_ns();
+      end_ns_ = std::max(end_ns_, to_ns(start, stream().time_base) + duration);
+    }
+    cut_ = !whole && read != AVERROR_EOF;
+    drained_ = !whole;
+    const int sent = avcodec_send_packet(decoder_.get(), whole ? packet_.get() : nullptr);
+    av_packet_unref(packet_.get());
+    if (sent < 0 && sent != AVERROR_EOF) {
+      // What the decoder holds back is whole: it is still given.
+      cut_ = drained_ = true;
+      avcodec_send_packet(decoder_.get(), nullptr);
+    }
+  }
+}
+
+Result<Next> VideoFile::next(Picture& into) {
+  const Decoded decoded = pending_ ? Decoded::kFrame : decode();
+  pending_ = false;
+  if (decoded == Decoded::kEnd) return Next::kEnd;
+  if (decoded == Decoded::kCut) return Next::kCut;
+  if (Size{frame_->width, frame_->height} != size_)
+    return Error{ErrorCode::kUnsupported,
+                 fmt::format("cannot read video {}: its pictures change size at number {}", name_, given_)};
+  if (!to_rgb_.convert(*frame_, into.pixels))
+    return Error{ErrorCode::kUnsupported,
+                 fmt::format("cannot read video {}: its size or kind of pixels is not supported", name_)};
+  into.t_ns = to_ns(frame_->best_effort_timestamp, stream().time_base);
+  into.sequence = given_++;
+  return Next::kPicture;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Source>> open_video(const std::filesystem::path& path) {
+  auto video = std::make_unique<VideoFile>();
+  DUO_TRY(video->open(path));
+  return std::unique_ptr<Source>(std::move(video));
+}
+
+}  // namespace duo
