@@ -1,0 +1,147 @@
+#include "stages/rectify/rectify.h"
+
+#include <chrono>
+
+#include "tests/agree.h"
+
+namespace duo {
+namespace {
+
+struct Place {
+  std::uint32_t x0, y0, fx, fy;
+};
+ResampleMap one_pixel(Place p) {
+  ResampleMap map{Image<std::uint32_t>({1, 1}), Image<std::uint16_t>({1, 1})};
+  map.corner.at(0, 0) = p.x0 << 16 | p.y0;
+  map.fraction_q8.at(0, 0) = static_cast<std::uint16_t>(p.fx << 8 | p.fy);
+  return map;
+}
+
+int value_at(View<const std::uint8_t> src, Place p) {
+  Image<std::uint8_t> dst({1, 1}), inside({1, 1});
+  ref::rectify(src, one_pixel(p), dst, inside);
+  EXPECT_EQ(inside.at(0, 0), 255);
+  return dst.at(0, 0);
+}
+
+// By hand, on 10 20 / 30 60: no fraction 10; half to the right 15; half down 20; the middle (10 + 20 + 30 + 60) / 4 = 30;
+// fx 1/4, fy 3/4: top 12.5, bottom 37.5, 12.5 / 4 + 37.5 * 3 / 4 = 31.25 -> 31; 255/256 to both: 59.6 -> 60.
+TEST(Rectify, HandWorked) {
+  const auto src = test::image<std::uint8_t>({{10, 20, 99}, {30, 60, 99}, {99, 99, 99}});
+  EXPECT_EQ(value_at(src, {0, 0, 0, 0}), 10);
+  EXPECT_EQ(value_at(src, {0, 0, 128, 0}), 15);
+  EXPECT_EQ(value_at(src, {0, 0, 0, 128}), 20);
+  EXPECT_EQ(value_at(src, {0, 0, 128, 128}), 30);
+  EXPECT_EQ(value_at(src, {0, 0, 64, 192}), 31);
+  EXPECT_EQ(value_at(src, {0, 0, 255, 255}), 60);
+  EXPECT_EQ(value_at(src, {1, 1, 255, 255}), 99);
+}
+
+TEST(Rectify, MarksOutside) {
+  const auto src = test::constant<std::uint8_t>({4, 4}, 200);
+  ResampleMap map = one_pixel({0, 0, 0, 0});
+  map.corner.at(0, 0) = ResampleMap::kOutside;
+  auto dst = test::constant<std::uint8_t>({1, 1}, 7), inside = test::constant<std::uint8_t>({1, 1}, 7);
+  ref::rectify(src, map, dst, inside);
+  EXPECT_EQ(dst.at(0, 0), 0);
+  EXPECT_EQ(inside.at(0, 0), 0);
+}
+
+/// Any place of the raw picture, its last ones often, and a tenth outside.
+ResampleMap random_map(Size raw, Size size, std::mt19937& rng) {
+  ResampleMap map{Image<std::uint32_t>(size), Image<std::uint16_t>(size)};
+  const auto place = [&](int length) {
+    const auto last = static_cast<std::uint32_t>(length - 2);
+    return rng() % 4 == 0 ? last - std::min<std::uint32_t>(last, rng() % 3) : static_cast<std::uint32_t>(rng() % (last + 1));
+  };
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const std::uint32_t x0 = place(raw.width), y0 = place(raw.height);
+      map.corner.at(y, x) = rng() % 10 == 0 ? ResampleMap::kOutside : x0 << 16 | y0;
+      map.fraction_q8.at(y, x) = static_cast<std::uint16_t>(rng());
+    }
+  return map;
+}
+
+TEST(Rectify, SimdAgrees) {
+  std::mt19937 rng(1);
+  Pool one(1), two(2);
+  for (const Size raw : {Size{2, 2}, {3, 2}, {2, 5}, {4, 3}, {7, 4}, {65, 33}, {640, 480}})
+    for (const Size size : test::awkward_sizes())
+      for (const test::Fill how : test::kFills) {
+        // Without a byte to spare at either end, so that the address sanitizer sees a read outside.
+        const int stride = raw.width + 1;
+        std::vector<std::uint8_t> pixels(static_cast<std::size_t>(stride * (raw.height - 1) + raw.width));
+        const View<std::uint8_t> src(pixels.data(), raw, stride);
+        test::fill(src, how, rng);
+        const ResampleMap map = random_map(raw, size, rng);
+        test::Tight<std::uint8_t> want(size), want_inside(size);
+        ref::rectify(src, map, want.view, want_inside.view);
+        test::each_target([&](const std::string& target) {
+          for (Pool* pool : {&one, &two}) {
+            test::Tight<std::uint8_t> got(size), got_inside(size);
+            simd::rectify(*pool, src, map, got.view, got_inside.view);
+            const std::string what = "rectify simd " + target + " threads " + std::to_string(pool->threads());
+            test::expect_same<std::uint8_t>(want.view, got.view, what);
+            test::expect_same<std::uint8_t>(want_inside.view, got_inside.view, what + " inside");
+          }
+        });
+        if (HasFailure()) return;
+      }
+}
+
+TEST(Rectify, ColorIsThreeGrays) {
+  std::mt19937 rng(2);
+  Pool two(2);
+  const Size raw{31, 17}, size{45, 13};
+  Image<std::uint8_t> channels[3] = {Image<std::uint8_t>(raw), Image<std::uint8_t>(raw), Image<std::uint8_t>(raw)};
+  Image<Rgb8> src(raw), dst(size);
+  for (auto& channel : channels) test::fill(channel.view(), test::Fill::kRandom, rng);
+  for (int y = 0; y < raw.height; ++y)
+    for (int x = 0; x < raw.width; ++x) src.at(y, x) = {channels[0].at(y, x), channels[1].at(y, x), channels[2].at(y, x)};
+  const ResampleMap map = random_map(raw, size, rng);
+  simd::rectify(two, src, map, dst);
+  for (int i = 0; i < 3; ++i) {
+    Image<std::uint8_t> want(size), inside(size);
+    ref::rectify(channels[i], map, want, inside);
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) {
+        const Rgb8 got = dst.at(y, x);
+        ASSERT_EQ(want.at(y, x), (i == 0 ? got.r : i == 1 ? got.g : got.b)) << y << " " << x;
+      }
+  }
+}
+
+// A shifted, slightly turned view, as real rigs have.
+TEST(Rectify, Speed) {
+  const Size size{640, 480};
+  ResampleMap map{Image<std::uint32_t>(size), Image<std::uint16_t>(size)};
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const double sx = 1.01 * x + 0.02 * y - 5, sy = y - 0.02 * x + 4;
+      const bool seen = sx >= 0 && sy >= 0 && sx < size.width - 1 && sy < size.height - 1;
+      map.corner.at(y, x) =
+          seen ? static_cast<std::uint32_t>(sx) << 16 | static_cast<std::uint32_t>(sy) : ResampleMap::kOutside;
+      map.fraction_q8.at(y, x) =
+          static_cast<std::uint16_t>((static_cast<int>(sx * 256) & 0xFF) << 8 | (static_cast<int>(sy * 256) & 0xFF));
+    }
+  Image<std::uint8_t> src(size), dst(size), inside(size);
+  Pool one(1);
+  const auto best_ns = [](auto&& f) {
+    double best = 1e9;
+    for (int i = 0; i < 20; ++i) {
+      const auto begin = std::chrono::steady_clock::now();
+      f();
+      best = std::min(best, std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count());
+    }
+    return best / (640 * 480);
+  };
+  std::printf("rectify ref: %.2f ns/pixel\n", best_ns([&] { ref::rectify(src, map, dst, inside); }));
+  test::each_target([&](const std::string& target) {
+    std::printf("rectify simd %s: %.2f ns/pixel\n", target.c_str(),
+                best_ns([&] { simd::rectify(one, src, map, dst, inside); }));
+  });
+}
+
+}  // namespace
+}  // namespace duo

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "stages/rectify/rectify.h"
+#include "vulkan/recorder.h"
+
+namespace duo::vk {
+
+/// Rectification on a device; the contract is in rectify.h.
+class Rectify {
+ public:
+  /// ResampleMap on the device.
+  struct Map {
+    BufferView<std::uint32_t> corner;
+    BufferView<std::uint16_t> fraction_q8;
+  };
+  static Result<Rectify> make(const Device& device);
+  /// `size` is that of the map; what the map says must lie inside `src`.
+  void record(Recorder& recorder, BufferView<std::uint8_t> src, const Map& map, BufferView<std::uint8_t> dst,
+              BufferView<std::uint8_t> inside, Size size) const;
+
+ private:
+  Kernel kernel_;
+};
+
+}  // namespace duo::vk
