@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "duoptic/frame.h"
 #include "duoptic/result.h"
@@ -13,6 +15,8 @@ namespace duo {
 Result<void> write_pfm(View<const std::uint16_t> d_q4, const std::filesystem::path& path);
 /// Reads a one-channel PFM, either byte order; rows top to bottom.
 Result<Image<float>> read_pfm(const std::filesystem::path& path);
+/// The same for bytes already in memory; `name` stands for them in messages.
+Result<Image<float>> parse_pfm(std::string_view bytes, const std::string& name);
 
 /// Disparity as colours: the Turbo map (Mikhailov 2019), near is red, none is black, with a legend; the legend is in
 /// metres when `rectified` is given, else in px. The range of the colours is the 1st to 99th percentile of the valid pixels.

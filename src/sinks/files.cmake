@@ -1,1 +1,7 @@
 # Explicit names, no glob: what is not listed is not built.
+set(dir ${PROJECT_SOURCE_DIR}/src/sinks)
+target_sources(duoptic PRIVATE ${dir}/draw_cloud.cpp ${dir}/draw_disparity.cpp ${dir}/pfm.cpp ${dir}/ply.cpp ${dir}/png.cpp)
+duoptic_test(sinks/files ${dir}/files_test.cpp)
+if(DUO_TESTS)
+  target_link_libraries(sinks_files_test PRIVATE opencv::core opencv::imgcodecs)
+endif()

@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "duoptic/sink.h"
+#include "sinks/turbo.h"
+
+namespace duo {
+namespace {
+
+/// The disparities that get the first and the last colour.
+struct Range {
+  double far_px = 0, near_px = 0;
+  bool empty() const { return near_px <= far_px; }
+  double position(double d_px) const { return (d_px - far_px) / (near_px - far_px); }
+};
+
+Range range_of(View<const std::uint16_t> d_q4) {
+  std::vector<std::uint16_t> known;
+  for (int y = 0; y < d_q4.height(); ++y)
+    for (int x = 0; x < d_q4.width(); ++x)
+      if (d_q4.at(y, x) != Disparity::kNone) known.push_back(d_q4.at(y, x));
+  if (known.empty()) return {};
+  const auto percentile = [&](double share) {
+    const auto at = known.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(known.size() - 1));
+    std::nth_element(known.begin(), at, known.end());
+    return *at / 16.0;
+  };
+  const double far_px = percentile(0.01), near_px = percentile(0.99);
+  return {far_px, std::max(near_px, far_px + 1)};
+}
+
+struct Tick {
+  double d_px;
+  std::string label;
+};
+
+/// Round values in the order of importance: what fits first, stays.
+std::vector<Tick> ticks(const Range& range, const Rectified* rectified) {
+  std::vector<Tick> out;
+  for (const double leading :
+       {1.0, 2.0, 5.0, 3.0, 1.5, 4.0, 7.0, 2.5, 6.0, 8.0, 9.0, 1.2, 1.4, 1.6, 1.8, 1.1, 1.3, 1.7, 2.2, 3.5, 4.5})
+    for (const double power : {1.0, 10.0, 100.0, 0.1, 0.01, 1000.0}) {
+      const double value = leading * power;
+      if (!rectified && value != std::floor(value)) continue;
+      const double d_px = rectified ? rectified->focal_px * rectified->baseline_m / value : value;
+      if (d_px >= range.far_px && d_px <= range.near_px)
+        out.push_back({d_px, fmt::format("{:.3g} {}", value, rectified ? "m" : "px")});
+    }
+  return out;
+}
+
+void draw_legend(cv::Mat rgb, const Range& range, const Rectified* rectified) {
+  const double zoom = rgb.rows / 44.0;
+  const int margin = static_cast<int>(10 * zoom), bar_top = static_cast<int>(7 * zoom),
+            bar_bottom = static_cast<int>(21 * zoom);
+  const int bar_width = rgb.cols - 2 * margin;
+  if (bar_width < 2) return;
+  const double font = 0.42 * zoom;
+  const int thickness = std::max(1, static_cast<int>(zoom));
+  const auto text = [&](const std::string& label, int left) {
+    cv::putText(rgb, label, {left, static_cast<int>(38 * zoom)}, cv::FONT_HERSHEY_SIMPLEX, font, {225, 225, 225}, thickness,
+                cv::LINE_AA);
+  };
+  if (range.empty()) return text("no disparity", margin);
+  for (int x = 0; x < bar_width; ++x) {
+    const Rgb8 c = turbo(static_cast<double>(x) / (bar_width - 1));
+    cv::line(rgb, {margin + x, bar_top}, {margin + x, bar_bottom}, {double(c.r), double(c.g), double(c.b)});
+  }
+  std::vector<std::pair<int, int>> taken;  // labels drawn, from left to right end
+  for (const Tick& tick : ticks(range, rectified)) {
+    const int x = margin + static_cast<int>(range.position(tick.d_px) * (bar_width - 1));
+    const int width = cv::getTextSize(tick.label, cv::FONT_HERSHEY_SIMPLEX, font, thickness, nullptr).width;
+    const int left = x - width / 2, gap = static_cast<int>(8 * zoom);
+    const bool fits = left >= 0 && left + width <= rgb.cols && std::none_of(taken.begin(), taken.end(), [&](const auto& other) {
+                        return left < other.second + gap && other.first < left + width + gap;
+                      });
+    if (!fits) continue;
+    taken.emplace_back(left, left + width);
+    cv::line(rgb, {x, bar_bottom}, {x, bar_bottom + static_cast<int>(4 * zoom)}, {225, 225, 225}, thickness);
+    text(tick.label, left);
+  }
+}
+
+}  // namespace
+
+Image<Rgb8> draw_disparity(View<const std::uint16_t> d_q4, const Rectified* rectified) {
+  const int legend_height = std::max(44, 44 * d_q4.width() / 640);
+  Image<Rgb8> out({d_q4.width(), d_q4.height() + legend_height});
+  const Range range = range_of(d_q4);
+  for (int y = 0; y < d_q4.height(); ++y)
+    for (int x = 0; x < d_q4.width(); ++x)
+      if (const std::uint16_t d = d_q4.at(y, x); d != Disparity::kNone) out.at(y, x) = turbo(range.position(d / 16.0));
+  const View<Rgb8> legend = out.view().crop(d_q4.height(), 0, {d_q4.width(), legend_height});
+  draw_legend(
+      cv::Mat(legend_height, legend.width(), CV_8UC3, legend.data(), static_cast<std::size_t>(legend.stride()) * sizeof(Rgb8)),
+      range, rectified);
+  return out;
+}
+
+}  // namespace duo
