@@ -31,9 +31,10 @@ class Lens {
   /// The ray (z = 1) that a pixel sees; none where no ray reaches it.
   std::optional<Vec3> ray_of(Vec2 pixel_px) const;
 
-  /// Whether the picture has pixels all around the place, so that it can be interpolated.
-  bool covers(Vec2 pixel_px) const {
-    return pixel_px.x >= 0 && pixel_px.y >= 0 && pixel_px.x <= camera_.size.width - 1 && pixel_px.y <= camera_.size.height - 1;
+  /// Whether the place lies between the centres of the picture's pixels, give or take `slack_px`.
+  bool covers(Vec2 pixel_px, double slack_px = 0) const {
+    return pixel_px.x >= -slack_px && pixel_px.y >= -slack_px && pixel_px.x <= camera_.size.width - 1 + slack_px &&
+           pixel_px.y <= camera_.size.height - 1 + slack_px;
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "calib/rig_formats.h"
 
@@ -11,6 +12,7 @@ namespace duo {
 namespace {
 
 constexpr double kNearest_m = 0.4;
+constexpr double kMinCosine = 0.1;  // rays further than 84 degrees from the z axis fit on no flat picture
 constexpr double kMaxGrowth = 1.5, kMinZoom = 0.5;
 
 /// A range of tangents; empty when min > max.
@@ -36,7 +38,7 @@ Footprint footprint(const Lens& lens, const Mat3& rig_from_camera) {
   Footprint seen;
   const auto add = [&](Vec3 ray) {
     const Vec3 p = rig_from_camera * ray;
-    if (p.z <= 0) return;
+    if (p.z < kMinCosine * norm(p)) return;
     seen.x.add(p.x / p.z);
     seen.y.add(p.y / p.z);
   };
@@ -67,26 +69,26 @@ double angle_between_axes_deg(const Rig& rig) {
   return std::acos(std::clamp(rig.right_from_left.rotation(2, 2), -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
-// In bounds for 16.16 corners: x0 <= width - 2. The last row and column of the raw picture are reached with the largest
-// fraction, 255/256 of a pixel, instead of being lost.
+/// A place as the first of the two pixels it lies between, and the fraction in 1/256. The very last pixel is reached with
+/// the largest fraction, 255/256 of a pixel, instead of being lost.
+std::pair<std::uint32_t, std::uint32_t> split(double at_px, int length) {
+  const auto at_q8 = static_cast<std::uint32_t>(std::clamp(std::lround(at_px * 256), 0L, (length - 1) * 256L - 1));
+  return {at_q8 >> 8, at_q8 & 0xFF};
+}
+
 ResampleMap make_map(const Rectified& geometry, const Mat3& rig_from_camera, const Lens& lens) {
+  constexpr double kRounding_px = 1.0 / 512;
   const auto [w, h] = lens.camera().size;
   ResampleMap map{Image<std::uint32_t>(geometry.size), Image<std::uint16_t>(geometry.size)};
-  const auto split = [](double at_px, int size, std::uint32_t& whole, std::uint32_t& fraction) {
-    const long at_q8 = std::lround(at_px * 256), last_q8 = (size - 1) * 256L;
-    if (at_q8 < 0 || at_q8 > last_q8) return false;
-    const auto inner_q8 = static_cast<std::uint32_t>(std::min(at_q8, last_q8 - 1));
-    whole = inner_q8 >> 8;
-    fraction = inner_q8 & 0xFF;
-    return true;
-  };
   for (int y = 0; y < geometry.size.height; ++y)
     for (int x = 0; x < geometry.size.width; ++x) {
-      map.corner.at(y, x) = ResampleMap::kOutside;
       const auto raw = raw_from_rectified(geometry, rig_from_camera, lens, {double(x), double(y)});
-      if (!raw || std::abs(raw->x) > 1e6 || std::abs(raw->y) > 1e6) continue;
-      std::uint32_t x0, y0, fx, fy;
-      if (!split(raw->x, w, x0, fx) || !split(raw->y, h, y0, fy)) continue;
+      if (!raw || !lens.covers(*raw, kRounding_px)) {
+        map.corner.at(y, x) = ResampleMap::kOutside;
+        continue;
+      }
+      const auto [x0, fx] = split(raw->x, w);
+      const auto [y0, fy] = split(raw->y, h);
       map.corner.at(y, x) = x0 << 16 | y0;
       map.fraction_q8.at(y, x) = static_cast<std::uint16_t>(fx << 8 | fy);
     }
@@ -109,7 +111,7 @@ std::optional<Vec2> raw_from_rectified(const Rectified& geometry, const Mat3& ri
                        Vec3{rectified_px.x - geometry.cx_px, rectified_px.y - geometry.cy_px, geometry.focal_px});
 }
 
-Result<Rectification> make_rectification(const Rig& rig, const std::string& name) {
+Result<Rectified> rectified_geometry(const Rig& rig, const std::string& name) {
   DUO_TRY(check_rig(rig, name));
   Rectified geometry;
   geometry.baseline_m = rig.baseline_m();
@@ -144,8 +146,13 @@ Result<Rectification> make_rectification(const Rig& rig, const std::string& name
   // Up to the next whole pixel, but not for the sake of rounding errors.
   const auto pixels = [&](Range range) { return static_cast<int>(std::ceil(range.length() * geometry.focal_px - 1e-6)) + 1; };
   geometry.size = {pixels(x), pixels(y)};
-  return Rectification{geometry, make_map(geometry, geometry.rig_from_left, left),
-                       make_map(geometry, geometry.rig_from_right, right)};
+  return geometry;
+}
+
+Result<Rectification> make_rectification(const Rig& rig, const std::string& name) {
+  DUO_TRY_ASSIGN(const Rectified geometry, rectified_geometry(rig, name));
+  return Rectification{geometry, make_map(geometry, geometry.rig_from_left, Lens(rig.left)),
+                       make_map(geometry, geometry.rig_from_right, Lens(rig.right))};
 }
 
 }  // namespace duo

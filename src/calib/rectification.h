@@ -14,16 +14,19 @@ struct Rectification {
   ResampleMap left, right;
 };
 
-/// The rectified geometry of a rig, and the maps that resample both raw pictures into it.
+/// The rectified geometry of a rig.
 ///
 /// The x axis lies along the baseline, z is the mean of both optical axes made orthogonal to it. The focal length is the mean
-/// of the raw ones. The canvas keeps every pixel of a point at 0.4 m or further that both raw pictures see; the maps mark the
-/// rest of it as outside. A canvas that would pass 1.5 times the raw size gets a shorter focal length instead, down to half.
+/// of the raw ones. The canvas keeps every pixel of a point at 0.4 m or further that both raw pictures see. A canvas that would
+/// pass 1.5 times the raw size gets a shorter focal length instead, down to half.
 ///
 /// Errors  what check_rig() refuses; views without common part, or so far from parallel (or so wide) that half the focal length
 /// is not short enough Source  Fusiello, Trucco, Verri, "A compact algorithm for rectification of stereo pairs", 2000; there
 /// the z axis follows
 ///         one camera, here both share the turn
+Result<Rectified> rectified_geometry(const Rig& rig, const std::string& name);
+
+/// The same with the maps that resample both raw pictures into it.
 Result<Rectification> make_rectification(const Rig& rig, const std::string& name);
 
 /// The point in the rig frame (metres) that a rectified left pixel with disparity d > 0 shows.
