@@ -9,3 +9,4 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/pictures.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/video.cpp)
 duoptic_test(sources/files ${PROJECT_SOURCE_DIR}/src/sources/files_test.cpp)
+include(${CMAKE_CURRENT_LIST_DIR}/synthetic/files.cmake)

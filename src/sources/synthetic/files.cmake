@@ -1,0 +1,14 @@
+target_sources(duoptic PRIVATE
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/furniture.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/lens.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/light.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/noise.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/patterns.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/render.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/room.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/scene.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/shapes.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/synthetic.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/textures.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/webcam.cpp)
+duoptic_test(sources/synthetic ${PROJECT_SOURCE_DIR}/src/sources/synthetic/synthetic_test.cpp)
