@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -12,7 +13,7 @@
 namespace duo {
 namespace {
 
-constexpr double kYaw_rad = -0.42, kPitch_rad = 0.22;  // the camera goes to the right and up
+constexpr double kYaw_rad = -0.38, kPitch_rad = 0.22;  // the camera goes to the right and up
 constexpr int kOversampling = 2;                       // drawn larger and averaged down: smooth edges
 constexpr double kMaxStep_px = 1.5;                    // neighbours further apart in disparity lie on different things
 

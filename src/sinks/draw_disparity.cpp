@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
@@ -31,6 +34,9 @@ Range range_of(View<const std::uint16_t> d_q4) {
   const double far_px = percentile(0.01), near_px = percentile(0.99);
   return {far_px, std::max(near_px, far_px + 1)};
 }
+
+/// The ends of the map are left out: its first colours look black, which stands for none.
+Rgb8 color_at(double position) { return turbo(0.06 + 0.91 * std::clamp(position, 0.0, 1.0)); }
 
 struct Tick {
   double d_px;
@@ -66,7 +72,7 @@ void draw_legend(cv::Mat rgb, const Range& range, const Rectified* rectified) {
   };
   if (range.empty()) return text("no disparity", margin);
   for (int x = 0; x < bar_width; ++x) {
-    const Rgb8 c = turbo(static_cast<double>(x) / (bar_width - 1));
+    const Rgb8 c = color_at(static_cast<double>(x) / (bar_width - 1));
     cv::line(rgb, {margin + x, bar_top}, {margin + x, bar_bottom}, {double(c.r), double(c.g), double(c.b)});
   }
   std::vector<std::pair<int, int>> taken;  // labels drawn, from left to right end
@@ -92,7 +98,7 @@ Image<Rgb8> draw_disparity(View<const std::uint16_t> d_q4, const Rectified* rect
   const Range range = range_of(d_q4);
   for (int y = 0; y < d_q4.height(); ++y)
     for (int x = 0; x < d_q4.width(); ++x)
-      if (const std::uint16_t d = d_q4.at(y, x); d != Disparity::kNone) out.at(y, x) = turbo(range.position(d / 16.0));
+      if (const std::uint16_t d = d_q4.at(y, x); d != Disparity::kNone) out.at(y, x) = color_at(range.position(d / 16.0));
   const View<Rgb8> legend = out.view().crop(d_q4.height(), 0, {d_q4.width(), legend_height});
   draw_legend(
       cv::Mat(legend_height, legend.width(), CV_8UC3, legend.data(), static_cast<std::size_t>(legend.stride()) * sizeof(Rgb8)),
