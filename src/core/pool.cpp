@@ -22,7 +22,7 @@ Pool::~Pool() {
 
 void Pool::run(int count, int grain, Call call, void* context) {
   if (count <= 0) return;
-  if (workers_.empty() || count <= grain) return call(context, 0, count);
+  if (workers_.empty() || count <= grain) return call(context, 0, count, 0);
   {
     const std::lock_guard lock(mutex_);
     count_ = count;
@@ -42,7 +42,7 @@ void Pool::run_part(int part) const {
   const int blocks = (count_ + grain_ - 1) / grain_;
   const auto bound = [&](int p) { return std::min(count_, static_cast<int>(std::int64_t{blocks} * p / threads()) * grain_); };
   const int begin = bound(part), end = bound(part + 1);
-  if (begin < end) call_(context_, begin, end);
+  if (begin < end) call_(context_, begin, end, part);
 }
 
 void Pool::work(int part) {

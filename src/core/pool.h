@@ -22,16 +22,23 @@ class Pool {
 
   int threads() const { return static_cast<int>(workers_.size()) + 1; }
 
-  /// Calls f(begin, end) on contiguous parts of [0, count), one part a thread, each part's start a multiple of `grain`.
-  /// Which thread runs which part must not change the result: stages write only their own rows.
+  /// Calls f(begin, end) or f(begin, end, part) on contiguous parts of [0, count), one part a thread, each part's start a multiple
+  /// of `grain`. Which thread runs which part must not change the result: stages write only their own rows; `part` < threads()
+  /// chooses scratch memory.
   template <class F>
   void rows(int count, F&& f, int grain = 1) {
-    auto call = [](void* context, int begin, int end) { (*static_cast<std::remove_reference_t<F>*>(context))(begin, end); };
+    auto call = [](void* context, int begin, int end, [[maybe_unused]] int part) {
+      auto& work = *static_cast<std::remove_reference_t<F>*>(context);
+      if constexpr (std::is_invocable_v<F, int, int, int>)
+        work(begin, end, part);
+      else
+        work(begin, end);
+    };
     run(count, grain, call, const_cast<void*>(static_cast<const void*>(&f)));
   }
 
  private:
-  using Call = void (*)(void* context, int begin, int end);
+  using Call = void (*)(void* context, int begin, int end, int part);
   void run(int count, int grain, Call call, void* context);
   void run_part(int part) const;
   void work(int part);

@@ -16,10 +16,14 @@ namespace duo {
 // Threads  rows are independent
 // Exact    ref and simd agree bit for bit
 // Source   the row-minimum fill of the Middlebury evaluations (Scharstein, Szeliski 2002)
+//
+// mark_measured: origin is kMeasured where there is a disparity, else kNone; it comes first.
 namespace ref {
+void mark_measured(View<const std::uint16_t> d_q4, View<std::uint8_t> origin);
 void fill(View<std::uint16_t> d_q4, View<std::uint8_t> origin);
 }
 namespace simd {
+void mark_measured(Pool& pool, View<const std::uint16_t> d_q4, View<std::uint8_t> origin);
 void fill(Pool& pool, View<std::uint16_t> d_q4, View<std::uint8_t> origin);
 }
 

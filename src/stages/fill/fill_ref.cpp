@@ -5,6 +5,13 @@
 
 namespace duo::ref {
 
+void mark_measured(View<const std::uint16_t> d_q4, View<std::uint8_t> origin) {
+  DUO_CHECK(d_q4.size() == origin.size());
+  for (int y = 0; y < d_q4.height(); ++y)
+    for (int x = 0; x < d_q4.width(); ++x)
+      origin.at(y, x) = static_cast<std::uint8_t>(d_q4.at(y, x) == Disparity::kNone ? Origin::kNone : Origin::kMeasured);
+}
+
 void fill(View<std::uint16_t> d_q4, View<std::uint8_t> origin) {
   DUO_CHECK(d_q4.size() == origin.size());
   constexpr auto kMeasured = static_cast<std::uint8_t>(Origin::kMeasured);

@@ -7,6 +7,13 @@
 
 namespace duo::simd {
 
+void mark_measured(Pool& pool, View<const std::uint16_t> d_q4, View<std::uint8_t> origin) {
+  pool.rows(d_q4.height(), [&](int begin, int end) {
+    const Size part{d_q4.width(), end - begin};
+    ref::mark_measured(d_q4.crop(begin, 0, part), origin.crop(begin, 0, part));
+  });
+}
+
 void fill(Pool& pool, View<std::uint16_t> d_q4, View<std::uint8_t> origin) {
   DUO_CHECK(d_q4.size() == origin.size());
   const int w = d_q4.width();

@@ -9,9 +9,18 @@ constexpr int kNone = Disparity::kNone;
 
 Image<std::uint8_t> origin_of(View<const std::uint16_t> d) {
   Image<std::uint8_t> origin(d.size());
-  for (int y = 0; y < d.height(); ++y)
-    for (int x = 0; x < d.width(); ++x) origin.at(y, x) = d.at(y, x) == kNone ? 0 : 1;
+  ref::mark_measured(d, origin);
   return origin;
+}
+
+TEST(Fill, MarkMeasured) {
+  const auto d = test::image<std::uint16_t>({{0, kNone, 80}});
+  const auto want = test::image<std::uint8_t>({{1, 0, 1}});
+  test::expect_same<std::uint8_t>(want, origin_of(d), "mark_measured ref");
+  Image<std::uint8_t> got(d.size());
+  Pool two(2);
+  simd::mark_measured(two, d, got);
+  test::expect_same<std::uint8_t>(want, got, "mark_measured simd");
 }
 
 TEST(Fill, HandWorked) {

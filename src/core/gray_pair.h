@@ -1,0 +1,17 @@
+// What matchers see: both rectified gray pictures and where they are covered by the raw ones.
+#pragma once
+
+#include <cstdint>
+
+#include "duoptic/image.h"
+
+namespace duo {
+
+/// Shape   all H x W; the inside pictures (255 inside, 0 outside) may be empty = all inside
+struct GrayPair {
+  View<const std::uint8_t> left = {}, right = {}, left_inside = {}, right_inside = {};
+  Size size() const { return left.size(); }
+  bool masked() const { return !left_inside.empty(); }
+};
+
+}  // namespace duo
