@@ -1,0 +1,63 @@
+// Device: one opened Vulkan device with its one compute queue.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "vulkan/instance.h"
+
+namespace duo::vk {
+
+/// Stands for submitted work; tickets of one device finish in rising order.
+using Ticket = std::uint64_t;
+
+inline constexpr std::int64_t kWaitNs = 20'000'000'000;  // longer than any sound frame, shorter than a user's patience
+
+/// Opened device. Buffers, kernels, recorders and timers keep a pointer to it and must go before it.
+///
+/// Threads  submit: one at a time; wait: any
+class Device {
+ public:
+  /// Errors  the device lacks something, or the driver refuses
+  static Result<std::unique_ptr<Device>> make(std::shared_ptr<Instance> instance, const PhysicalDevice& physical);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  const DeviceInfo& info() const { return physical_.info; }
+  /// Errors  not finished within `timeout_ns`, device lost
+  Result<void> wait(Ticket ticket, std::int64_t timeout_ns = kWaitNs) const;
+  bool finished(Ticket ticket) const;
+
+  // For this folder and its tests.
+  Result<Ticket> submit(VkCommandBuffer commands);
+  VkDevice handle() const { return handle_; }
+  const DeviceFunctions& fn() const { return fn_; }
+  const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
+  std::uint32_t queue_family() const { return physical_.queue_family; }
+  /// Nanoseconds of one tick of the device's clock; 0 where it has none.
+  double tick_ns() const { return physical_.tick_ns; }
+  /// "`tried` on NAME: why"
+  Error error(const std::string& tried, VkResult why) const;
+  /// The name that validation messages and debuggers show.
+  template <class Handle>
+  void set_name(Handle object, VkObjectType type, const std::string& name) const {
+    set_name_u64(reinterpret_cast<std::uint64_t>(object), type, name);
+  }
+
+ private:
+  Device() = default;
+  void set_name_u64(std::uint64_t object, VkObjectType type, const std::string& name) const;
+
+  std::shared_ptr<Instance> instance_;
+  PhysicalDevice physical_;
+  VkDevice handle_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  VkSemaphore timeline_ = VK_NULL_HANDLE;  // counts finished tickets
+  Ticket last_ = 0;
+  DeviceFunctions fn_;
+  VkPhysicalDeviceMemoryProperties memory_{};
+};
+
+}  // namespace duo::vk

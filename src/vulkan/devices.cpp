@@ -1,0 +1,21 @@
+#include "duoptic/devices.h"
+
+#if DUO_VULKAN
+#include "vulkan/instance.h"
+#endif
+
+namespace duo {
+
+Result<std::vector<DeviceInfo>> vulkan_devices() {
+#if DUO_VULKAN
+  DUO_TRY_ASSIGN(const auto instance, vk::Instance::open(vk::Validation::kOff));
+  DUO_TRY_ASSIGN(const auto devices, instance->devices());
+  std::vector<DeviceInfo> infos;
+  for (const vk::PhysicalDevice& device : devices) infos.push_back(device.info);
+  return infos;
+#else
+  return Error{ErrorCode::kUnsupported, "listing Vulkan devices: this build has no Vulkan: build with -DDUO_VULKAN=ON"};
+#endif
+}
+
+}  // namespace duo

@@ -1,0 +1,86 @@
+// Recorder: a list of dispatches and copies, recorded once and submitted as often as wanted.
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <vector>
+
+#include "core/check.h"
+#include "vulkan/buffer.h"
+#include "vulkan/kernel.h"
+
+namespace duo::vk {
+
+/// How a command uses a buffer.
+struct Use {
+  VkBuffer buffer;
+  bool writes;
+};
+template <class T>
+Use reads(const BufferView<T>& view) {
+  return {view.buffer->handle(), false};
+}
+template <class T>
+Use writes(const BufferView<T>& view) {
+  return {view.buffer->handle(), true};
+}
+
+/// Workgroups of kGroupWidth x kGroupHeight that cover a picture.
+inline Size groups_for(Size size) {
+  return {(size.width + kGroupWidth - 1) / kGroupWidth, (size.height + kGroupHeight - 1) / kGroupHeight};
+}
+
+/// Records commands; puts a barrier before each that needs the results, or overwrites the inputs, of those before it.
+/// Recording cannot fail on the spot: the first error is kept, and end() returns it.
+///
+/// Threads  one
+class Recorder {
+ public:
+  static Result<Recorder> make(Device& device);
+  Recorder(Recorder&&) = default;
+  Recorder& operator=(Recorder&&) = delete;
+  ~Recorder();  // waits for its work
+
+  /// Starts anew; the work recorded before must be finished.
+  void begin();
+  /// Runs `kernel` in `groups` workgroups; the order of `uses` is that of the kernel's bindings.
+  template <class Push>
+  void dispatch(const Kernel& kernel, const Push& push, std::initializer_list<Use> uses, Size groups) {
+    dispatch_bytes(kernel, std::as_bytes(std::span(&push, 1)), uses, groups);
+  }
+  /// Copies the first `bytes` of a buffer.
+  void copy(const Buffer& src, const Buffer& dst, std::size_t bytes);
+  Result<void> end();
+
+  /// Starts the recorded work; its last submission must be finished.
+  Result<Ticket> submit();
+  /// submit() and wait.
+  Result<void> run(std::int64_t timeout_ns = kWaitNs);
+  VkCommandBuffer commands() const { return commands_; }
+
+ private:
+  struct Set {
+    VkDescriptorSetLayout layout;
+    std::vector<VkBuffer> buffers;
+    VkDescriptorSet handle;
+  };
+
+  explicit Recorder(Device& device) : device_(&device) {}
+  void dispatch_bytes(const Kernel& kernel, std::span<const std::byte> push, std::span<const Use> uses, Size groups);
+  void order(std::span<const Use> uses);
+  void barrier(VkPipelineStageFlags2 until, VkAccessFlags2 access);
+  VkDescriptorSet set_for(const Kernel& kernel, std::span<const Use> uses);
+  Result<VkDescriptorSet> allocate_set(VkDescriptorSetLayout layout);
+
+  Device* device_;
+  OwnedCommandPool command_pool_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  std::vector<OwnedSetPool> descriptor_pools_;
+  std::vector<Set> sets_;       // every set of this recording; a set lives as long as the recording
+  std::vector<Use> unordered_;  // uses since the last barrier
+  Result<void> failed_;
+  Ticket last_ = 0;
+};
+
+}  // namespace duo::vk

@@ -1,0 +1,175 @@
+#include <chrono>
+
+#include "duoptic/devices.h"
+#include "stages/median/median_vk.h"
+#include "tests/agree_vk.h"
+#include "vulkan/timer.h"
+
+namespace duo {
+namespace {
+
+using test::must;
+using test::OnDevice;
+
+TEST(Vulkan, ListsDevices) {
+  const auto devices = must(vulkan_devices());
+  ASSERT_FALSE(devices.empty());
+  for (const DeviceInfo& device : devices) {
+    EXPECT_FALSE(device.name.empty());
+    EXPECT_FALSE(device.api_version.empty());
+    if (device.lacks.empty()) {
+      EXPECT_GT(device.subgroup_size, 0);
+    }
+  }
+}
+
+TEST(Vulkan, SaysWhyThereIsNone) {
+  const auto missing = vk::Instance::open(vk::Validation::kOff, "libnot_vulkan.so.1");
+  ASSERT_FALSE(missing.has_value());
+  EXPECT_EQ(missing.error().code, ErrorCode::kNotFound);
+  EXPECT_NE(missing.error().what.find("libnot_vulkan.so.1"), std::string::npos) << missing.error().what;
+  const auto other = vk::Instance::open(vk::Validation::kOff, "libc.so.6");
+  ASSERT_FALSE(other.has_value());
+  EXPECT_EQ(other.error().code, ErrorCode::kUnsupported);
+}
+
+TEST(Vulkan, RefusesDeviceThatLacksSomething) {
+  const auto instance = must(vk::Instance::open(vk::Validation::kOff));
+  auto physical = must(instance->devices()).front();
+  physical.info.lacks = {"synchronization2", "a compute queue"};
+  const auto device = vk::Device::make(instance, physical);
+  ASSERT_FALSE(device.has_value());
+  EXPECT_NE(device.error().what.find("synchronization2, a compute queue"), std::string::npos) << device.error().what;
+}
+
+TEST(Vulkan, RefusesBufferOverTheLimit) {
+  test::each_device([](vk::Device& device, const std::string&) {
+    const auto buffer = vk::Buffer::make(device, "volume", vk::Buffer::kMaxBytes + 1, vk::Memory::kDevice);
+    ASSERT_FALSE(buffer.has_value());
+    EXPECT_NE(buffer.error().what.find("\"volume\""), std::string::npos) << buffer.error().what;
+  });
+}
+
+TEST(Vulkan, WaitEndsWithoutTheWork) {
+  test::each_device([](vk::Device& device, const std::string&) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto waited = device.wait(1'000'000, 20'000'000);  // a ticket that nobody submitted
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+    ASSERT_FALSE(waited.has_value());
+    EXPECT_EQ(waited.error().code, ErrorCode::kDeviceLost);
+  });
+}
+
+// Five medians to and fro between two buffers: each must wait for the one before, in both directions, and so must a second
+// run of the same recording with other pixels.
+TEST(Recorder, OrdersWhatDepends) {
+  test::each_device([](vk::Device& device, const std::string& where) {
+    const Size size{67, 21};
+    const auto median = must(vk::Median::make(device));
+    const OnDevice<std::uint8_t> a(device, size, "a"), b(device, size, "b");
+    auto upload = must(vk::Buffer::make(device, "upload", a.view().buffer->bytes(), vk::Memory::kUpload));
+    auto recorder = must(vk::Recorder::make(device));
+    recorder.begin();
+    b.record_upload(recorder);
+    recorder.copy(upload, *a.view().buffer, upload.bytes());
+    for (int i = 0; i < 5; ++i)
+      i % 2 == 0 ? median.record(recorder, a.view(), b.view(), size) : median.record(recorder, b.view(), a.view(), size);
+    b.record_download(recorder);
+    must(recorder.end());
+
+    std::mt19937 rng(3);
+    for (int run = 0; run < 3; ++run) {
+      const vk::Plane plane = a.view().plane;
+      auto* mapped = reinterpret_cast<std::uint8_t*>(upload.mapped().data());
+      const View<std::uint8_t> staged(mapped + plane.offset, size, plane.stride);
+      test::fill(staged, test::Fill::kRandom, rng);
+      Image<std::uint8_t> want(size), next(size);
+      for (int i = 0; i < 5; ++i) {
+        ref::median3x3(i == 0 ? View<const std::uint8_t>(staged) : want.view(), next);
+        want.swap(next);
+      }
+      must(recorder.run());
+      test::expect_same<std::uint8_t>(want, b.pixels(where), "5 medians" + where);
+    }
+  });
+}
+
+TEST(Recorder, MakesMoreSetsThanOnePoolHolds) {
+  test::each_device([](vk::Device& device, const std::string& where) {
+    const Size size{5, 4};
+    const auto src = test::constant<std::uint8_t>(size, 9);
+    const auto median = must(vk::Median::make(device));
+    const OnDevice<std::uint8_t> in(device, src, "in");
+    std::vector<OnDevice<std::uint8_t>> outs;
+    for (int i = 0; i < 70; ++i) outs.emplace_back(device, size, "out");
+    auto recorder = must(vk::Recorder::make(device));
+    recorder.begin();
+    in.record_upload(recorder);
+    for (const auto& out : outs) {
+      out.record_upload(recorder);
+      median.record(recorder, in.view(), out.view(), size);
+      out.record_download(recorder);
+    }
+    must(recorder.end());
+    must(recorder.run());
+    for (const auto& out : outs) test::expect_same<std::uint8_t>(src, out.pixels(where), "median" + where);
+  });
+}
+
+TEST(Timer, TimesEachPart) {
+  test::each_device([](vk::Device& device, const std::string&) {
+    const Size size{320, 240};
+    const auto median = must(vk::Median::make(device));
+    const OnDevice<std::uint8_t> a(device, test::constant<std::uint8_t>(size, 1), "a"), b(device, size, "b");
+    auto timer = must(vk::Timer::make(device, 2));
+    auto recorder = must(vk::Recorder::make(device));
+    recorder.begin();
+    timer.start(recorder);
+    a.record_upload(recorder);
+    timer.stage(recorder, "upload");
+    median.record(recorder, a.view(), b.view(), size);
+    timer.stage(recorder, "median");
+    must(recorder.end());
+    must(recorder.run());
+    const auto times = must(timer.read());
+    ASSERT_EQ(times.size(), 2u);
+    EXPECT_EQ(times[0].stage, "upload");
+    EXPECT_EQ(times[1].stage, "median");
+    if (device.tick_ns() != 0) {
+      EXPECT_GT(times[1].ns, 0);
+    }
+    EXPECT_LT(times[1].ns, 60e9);
+  });
+}
+
+// Validation that never speaks would prove nothing: here it must. Further instances, so that the tests' own stays silent.
+std::vector<std::string> messages_of(void (*mistake)(const vk::Device& device, VkCommandBuffer commands, VkBuffer buffer)) {
+  const auto instance = must(vk::Instance::open(vk::Validation::kOn));
+  const auto device = must(vk::Device::make(instance, must(instance->devices()).front()));
+  const auto buffer = must(vk::Buffer::make(*device, "contested", 64, vk::Memory::kDevice));
+  auto recorder = must(vk::Recorder::make(*device));
+  recorder.begin();
+  mistake(*device, recorder.commands(), buffer.handle());
+  (void)recorder.end();
+  return instance->messages();
+}
+
+TEST(Validation, HearsTheMissingBarrier) {
+  const auto messages = messages_of([](const vk::Device& device, VkCommandBuffer commands, VkBuffer buffer) {
+    device.fn().vkCmdFillBuffer(commands, buffer, 0, VK_WHOLE_SIZE, 1);
+    device.fn().vkCmdFillBuffer(commands, buffer, 0, VK_WHOLE_SIZE, 2);
+  });
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_NE(messages[0].find("SYNC-HAZARD-WRITE-AFTER-WRITE"), std::string::npos) << messages[0];
+}
+
+TEST(Validation, HearsTheWrongArgument) {
+  const auto messages = messages_of([](const vk::Device& device, VkCommandBuffer commands, VkBuffer buffer) {
+    device.fn().vkCmdFillBuffer(commands, buffer, 1, 4, 0);  // offsets are multiples of 4
+  });
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_NE(messages[0].find("VUID-vkCmdFillBuffer-dstOffset"), std::string::npos) << messages[0];
+}
+
+}  // namespace
+}  // namespace duo
