@@ -3,15 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <random>
 
 namespace duo {
 namespace {
-
-namespace fs = std::filesystem;
 
 Mat3 turned(Vec3 by_rad) {
   const double angle = norm(by_rad);
@@ -170,40 +165,6 @@ TEST(Rectification, RefusesViewsThatCannotMeet) {
   Rig broken = ideal_rig();
   broken.left.fx_px = 0;
   expect_refused(broken, "focal length");
-}
-
-// Joints of a rendered person: where both true pixels are known, our rectification must put them on one row.
-TEST(Rectification, AlignsTheClipsJoints) {
-  const char* data = std::getenv("DUOPTIC_DATA");
-  const fs::path sequences = fs::path(data ? data : "../shared/data") / "sequences";
-  if (!fs::exists(sequences)) GTEST_SKIP() << "skipped: no data";
-  for (const char* clip : {"dev_easy_wave", "dev_hard_beige"}) {
-    const auto rig = load_rig(sequences / clip / "calibration_truth.yml");
-    ASSERT_TRUE(rig) << rig.error().what;
-    const Rectification r = rectified(*rig);
-    const Lens left(rig->left), right(rig->right);
-    std::ifstream file(sequences / clip / "truth.json");
-    double worst_px = 0;
-    int joints = 0, lost = 0;
-    const auto truth = nlohmann::json::parse(file);
-    for (const auto& frame : truth["frames"])
-      for (const auto& joint : frame["joints"]) {
-        if (!joint["in_left"] || !joint["in_right"]) continue;
-        const auto a =
-            rectified_from_raw(r.geometry, r.geometry.rig_from_left, left, {joint["uv_left"][0], joint["uv_left"][1]});
-        const auto b =
-            rectified_from_raw(r.geometry, r.geometry.rig_from_right, right, {joint["uv_right"][0], joint["uv_right"][1]});
-        ASSERT_TRUE(a && b);
-        worst_px = std::max(worst_px, std::abs(a->y - b->y));
-        lost += !kept(r.left, *a) || !kept(r.right, *b);
-        ++joints;
-      }
-    EXPECT_GT(joints, 500);
-    EXPECT_LT(worst_px, 0.05);
-    EXPECT_EQ(lost, 0);
-    std::printf("%s: %dx%d canvas, %d joints, rows differ by at most %.4f px\n", clip, r.geometry.size.width,
-                r.geometry.size.height, joints, worst_px);
-  }
 }
 
 }  // namespace
