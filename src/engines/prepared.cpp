@@ -1,0 +1,68 @@
+#include "engines/prepared.h"
+
+#include <fmt/format.h>
+
+
+namespace duo {
+namespace {
+
+// What raw webcam pictures get when nothing is asked for; docs/measurements.md has the comparison.
+constexpr Denoise kRawDenoise = Denoise::kMedian;
+
+Error bad(std::string what) { return {ErrorCode::kBadInput, std::move(what)}; }
+
+}  // namespace
+
+Result<Prepared> prepare_setup(const Setup& setup) {
+  Prepared out;
+  out.setup = setup;
+  if (setup.size.empty()) return bad("prepare the engine: the pictures have no pixels; give pictures of at least 1x1");
+  if (setup.max_disparity < 1 || setup.max_disparity > Engine::kMaxDisparity)
+    return bad(fmt::format("prepare the engine: max disparity {} is not in 1 .. {}; choose the disparity of the nearest thing in px",
+                           setup.max_disparity, Engine::kMaxDisparity));
+  if (setup.wants.depth && !setup.rig)
+    return bad("prepare the engine: depth in metres needs a rig (focal length and baseline); give one, or take disparity alone");
+  if (setup.matcher != "pyramid")
+    return bad(fmt::format("prepare the engine: no matcher is called \"{}\"; choose one of: pyramid", setup.matcher));
+  DUO_TRY_ASSIGN(out.pyramid, pyramid_params(setup.preset, setup.parameters));
+
+  const Denoise denoise = setup.denoise != Denoise::kAuto ? setup.denoise : (setup.rig ? kRawDenoise : Denoise::kNone);
+  out.median = denoise == Denoise::kMedian || denoise == Denoise::kBoth;
+  out.gaussian = denoise == Denoise::kGaussian || denoise == Denoise::kBoth;
+
+  out.size = setup.size;
+  if (setup.rig) {
+    const Rig& rig = *setup.rig;
+    if (!(rig.left.size == setup.size) || !(rig.right.size == setup.size))
+      return bad(fmt::format("prepare the engine: the rig was calibrated at {}x{}, the pictures are {}x{}; calibrate at the size in use, "
+                             "or give pictures of the rig's size",
+                             rig.left.size.width, rig.left.size.height, setup.size.width, setup.size.height));
+    DUO_TRY_ASSIGN(out.rectification, make_rectification(rig, "rig"));
+    out.geometry = out.rectification->geometry;
+    out.size = out.geometry->size;
+  }
+  return out;
+}
+
+MatchSetup match_setup(const Prepared& prepared) {
+  return {prepared.size, prepared.setup.max_disparity, prepared.rectification.has_value()};
+}
+
+float focal_baseline_px_mm(const Rectified& geometry) { return static_cast<float>(geometry.focal_px * geometry.baseline_m * 1000.0); }
+
+Frame make_frame(const Prepared& prepared) {
+  Frame frame;
+  frame.left = Image<std::uint8_t>(prepared.size);
+  frame.right = Image<std::uint8_t>(prepared.size);
+  if (prepared.rectification) {
+    frame.left_inside = Image<std::uint8_t>(prepared.size);
+    frame.right_inside = Image<std::uint8_t>(prepared.size);
+  }
+  if (prepared.setup.wants.color) frame.color = Image<Rgb8>(prepared.size);
+  if (prepared.setup.wants.depth) frame.depth_mm = Image<std::uint16_t>(prepared.size);
+  frame.disparity.d_q4 = Image<std::uint16_t>(prepared.size);
+  frame.disparity.origin = Image<std::uint8_t>(prepared.size);
+  return frame;
+}
+
+}  // namespace duo

@@ -1,0 +1,35 @@
+// What every engine settles before the first frame: checked choices, geometry, and the frame's memory.
+#pragma once
+
+#include <optional>
+
+#include "calib/rectification.h"
+#include "duoptic/engine.h"
+#include "matchers/pyramid/pyramid.h"
+
+namespace duo {
+
+struct Prepared {
+  Setup setup;
+  bool median = false, gaussian = false;  // denoising, resolved
+  std::optional<Rectification> rectification;
+  std::optional<Rectified> geometry;
+  Size size;               // of the rectified pictures
+  PyramidParams pyramid;
+};
+
+/// Checks the setup and computes the geometry.
+///
+/// Errors  unknown matcher, preset or parameter; values out of range; a rig of another resolution or that cannot be rectified;
+///         depth wanted without a rig
+Result<Prepared> prepare_setup(const Setup& setup);
+
+MatchSetup match_setup(const Prepared& prepared);
+
+/// The numerator of depth: focal_px * baseline_mm.
+float focal_baseline_px_mm(const Rectified& geometry);
+
+/// A frame with the memory for all maps that the setup wants.
+Frame make_frame(const Prepared& prepared);
+
+}  // namespace duo

@@ -1,0 +1,99 @@
+// The reference engine: plain loops, one thread. Slow on purpose: it defines the right answer.
+
+#include <algorithm>
+
+#include "core/check.h"
+#include "core/clock.h"
+#include "engines/engines.h"
+#include "engines/prepared.h"
+#include "matchers/pyramid/pyramid.h"
+#include "stages/depth/depth.h"
+#include "stages/fill/fill.h"
+#include "stages/gaussian/gaussian.h"
+#include "stages/gray/gray.h"
+#include "stages/median/median.h"
+#include "stages/rectify/rectify.h"
+
+namespace duo {
+namespace {
+
+class RefEngine final : public Engine {
+ public:
+  const char* name() const override { return "ref"; }
+  const std::optional<Rectified>& rectified() const override { return prepared_.geometry; }
+
+  Result<void> prepare(const Setup& setup) override {
+    DUO_TRY_ASSIGN(prepared_, prepare_setup(setup));
+    frame_ = make_frame(prepared_);
+    matcher_.emplace(prepared_.pyramid, match_setup(prepared_));
+    now_ = Image<std::uint8_t>(setup.size);
+    next_ = Image<std::uint8_t>(setup.size);
+    return {};
+  }
+
+  void submit(const Pair& pair) override {
+    DUO_CHECK(matcher_.has_value());
+    DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
+    const Setup& setup = prepared_.setup;
+    frame_.sequence = pair.sequence;
+    frame_.t_ns = pair.left.t_ns;
+    timer_.start(frame_.stages, setup.time_stages);
+
+    const auto* maps = prepared_.rectification ? &*prepared_.rectification : nullptr;
+    prepare_view(pair.left, maps ? &maps->left : nullptr, frame_.left, frame_.left_inside);
+    prepare_view(pair.right, maps ? &maps->right : nullptr, frame_.right, frame_.right_inside);
+
+    Disparity& disparity = frame_.disparity;
+    matcher_->match({frame_.left, frame_.right, frame_.left_inside, frame_.right_inside}, disparity.d_q4, timer_);
+    ref::mark_measured(disparity.d_q4, disparity.origin);
+    if (setup.fill) ref::fill(disparity.d_q4, disparity.origin);
+    timer_.stage("fill");
+    if (setup.wants.depth) ref::depth(disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame_.depth_mm);
+    timer_.stage("depth");
+    if (setup.wants.color) prepare_color(pair.left, maps);
+    timer_.stage("color");
+  }
+
+  const Frame& collect() override { return frame_; }
+
+ private:
+  /// Raw colour to what the matcher sees. Denoising comes before resampling: only there is noise independent from pixel to pixel.
+  void prepare_view(const Picture& picture, const ResampleMap* map, Image<std::uint8_t>& out, Image<std::uint8_t>& inside) {
+    ref::gray(picture.pixels, now_);
+    timer_.stage("gray");
+    if (prepared_.median) {
+      ref::median3x3(now_, next_);
+      now_.swap(next_);
+      timer_.stage("median");
+    }
+    if (prepared_.gaussian) {
+      ref::gaussian5x5(now_, next_);
+      now_.swap(next_);
+      timer_.stage("gaussian");
+    }
+    if (map != nullptr)
+      ref::rectify(now_, *map, out, inside);
+    else
+      out.swap(now_);
+    timer_.stage("rectify");
+  }
+
+  void prepare_color(const Picture& picture, const Rectification* maps) {
+    if (maps != nullptr) return simd::rectify(pool_, picture.pixels, maps->left, frame_.color);
+    for (int y = 0; y < picture.pixels.height(); ++y)
+      std::copy_n(picture.pixels.row(y), picture.pixels.width(), frame_.color.row(y));
+  }
+
+  Pool pool_{1};  // colour for display is resampled by the same code in every engine
+  Prepared prepared_;
+  std::optional<ref::Pyramid> matcher_;
+  Frame frame_;
+  Image<std::uint8_t> now_, next_;  // one view on its way through the denoising
+  StageTimer timer_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_ref_engine() { return std::make_unique<RefEngine>(); }
+
+}  // namespace duo

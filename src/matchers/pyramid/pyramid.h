@@ -1,0 +1,85 @@
+// The pyramid matcher: coarse-to-fine window matching with Birchfield-Tomasi costs. README.md beside this file tells the method.
+#pragma once
+
+#include <vector>
+
+#include "core/clock.h"
+#include "core/gray_pair.h"
+#include "core/pool.h"
+#include "core/tile_sets.h"
+#include "matchers/pyramid/pyramid_params.h"
+#include "stages/match_around/match_around.h"
+#include "stages/match_tiles/match_tiles.h"
+#include "stages/speckle/speckle.h"
+
+namespace duo {
+
+/// What a matcher needs to know before the first pair.
+struct MatchSetup {
+  Size size;
+  int max_disparity = 0;  // searches [0, max_disparity)
+  bool masked = false;    // pairs come with inside pictures
+};
+
+/// The memory of one level; level 0 is the full picture, which belongs to the caller.
+struct PyramidLevel {
+  Size size;
+  int max_disparity = 0;
+  Image<std::uint8_t> left, right, left_inside, right_inside;
+  Image<std::int16_t> left_winner, right_winner, checked;
+  Image<std::uint16_t> fine;
+  TileSets sets;
+
+  GrayPair pair() const { return {left, right, left_inside, right_inside}; }
+};
+std::vector<PyramidLevel> make_levels(const PyramidParams& params, const MatchSetup& setup);
+
+/// The thesis's search radius of a level: 2^(n-1) D_T, n counted from 1 at the coarsest, which has none.
+int radius_of(const PyramidParams& params, int level);
+
+namespace ref {
+
+class Pyramid {
+ public:
+  Pyramid(const PyramidParams& params, const MatchSetup& setup);
+  /// Disparity of the left picture in 1/16 px.
+  ///
+  /// Shape   pair as set up, d_q4 the same size
+  /// Errors  none, and no allocation but in the reference's stages
+  void match(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
+
+ private:
+  void match_around(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
+  void match_tiles(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
+  GrayPair pair_of(const GrayPair& full, int level) const { return level == 0 ? full : levels_[static_cast<std::size_t>(level)].pair(); }
+
+  PyramidParams params_;
+  std::vector<PyramidLevel> levels_;
+  Image<std::uint16_t> filtered_;
+};
+
+}  // namespace ref
+
+namespace simd {
+
+class Pyramid {
+ public:
+  Pyramid(Pool& pool, const PyramidParams& params, const MatchSetup& setup);
+  void match(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
+
+ private:
+  void match_around(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
+  void match_tiles(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
+  GrayPair pair_of(const GrayPair& full, int level) const { return level == 0 ? full : levels_[static_cast<std::size_t>(level)].pair(); }
+
+  Pool& pool_;
+  PyramidParams params_;
+  std::vector<PyramidLevel> levels_;
+  Image<std::uint16_t> filtered_;
+  std::vector<MatchAroundScratch> around_scratch_;
+  std::vector<MatchTilesScratch> tiles_scratch_;
+  SpeckleScratch speckle_scratch_;
+};
+
+}  // namespace simd
+}  // namespace duo

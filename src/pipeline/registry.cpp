@@ -1,0 +1,36 @@
+// What can be chosen by name: a table a kind, edited by hand.
+
+#include <fmt/format.h>
+
+#include "duoptic/engine.h"
+#include "engines/engines.h"
+#include "matchers/pyramid/pyramid_params.h"
+
+namespace duo {
+
+Result<std::unique_ptr<Engine>> make_engine(std::string_view name, int threads) {
+  if (threads < 1 || threads > 256)
+    return Error{ErrorCode::kBadInput, fmt::format("make the engine: {} threads is not in 1 .. 256; leave it out for all cores", threads)};
+  if (name == "simd" || name == "auto") return make_simd_engine(threads);
+  if (name == "ref") return make_ref_engine();
+  return Error{ErrorCode::kBadInput, fmt::format("make the engine: no engine is called \"{}\"; choose one of: auto, simd, ref", name)};
+}
+
+std::vector<std::string> matcher_names() { return {"pyramid"}; }
+
+std::vector<std::string> matcher_presets(std::string_view matcher) {
+  if (matcher != "pyramid") return {};
+  return {std::begin(kPyramidPresets), std::end(kPyramidPresets)};
+}
+
+Result<std::vector<ParameterInfo>> matcher_parameters(std::string_view matcher, std::string_view preset) {
+  if (matcher != "pyramid")
+    return Error{ErrorCode::kBadInput, fmt::format("list parameters: no matcher is called \"{}\"; choose one of: pyramid", matcher)};
+  DUO_TRY_ASSIGN(const PyramidParams params, pyramid_params(preset, {}));
+  std::vector<ParameterInfo> out;
+  for (const auto& p : kPyramidParameters)
+    out.push_back({p.name, p.unit, p.help, double(params.*p.member), double(p.min), double(p.max)});
+  return out;
+}
+
+}  // namespace duo
