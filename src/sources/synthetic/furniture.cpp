@@ -125,8 +125,9 @@ void add_books(const Group& group, Random& random, int count) {
   for (int i = 0; i < count; ++i) {
     const double half_y = random.uniform(0.011, 0.022), half_x = random.uniform(0.095, 0.13), half_z = 0.72 * half_x;
     // The texture's spine faces -z and is as long as y: the book lies on its side.
-    group.box({random.uniform(-0.012, 0.012), y - half_y, random.uniform(-0.01, 0.01)}, {half_y, half_x, half_z},
-              group.scene().add(book_cover(random)), 0, about_y(random.uniform(-14, 14)) * about_z(90));
+    const Vec3 at{random.uniform(-0.012, 0.012), y - half_y, random.uniform(-0.01, 0.01)};
+    const double turned = random.uniform(-14, 14);
+    group.box(at, {half_y, half_x, half_z}, group.scene().add(book_cover(random)), 0, about_y(turned) * about_z(90));
     y -= 2 * half_y + 0.0005;
   }
 }

@@ -30,7 +30,7 @@ Point2 project(const Camera& camera, Point2 on_plane) {
 }
 
 Point2 unproject(const Camera& camera, Point2 pixel) {
-  constexpr double kClose = 1e-12;
+  constexpr double kClose = 1e-6;  // the step from there is right to 1e-12: Newton's method squares the error
   constexpr int kMaxSteps = 12;
   const Point2 want{(pixel.x - camera.cx_px) / camera.fx_px, (pixel.y - camera.cy_px) / camera.fy_px};
   if (camera.distortion == std::array<double, 8>{}) return want;
@@ -38,10 +38,10 @@ Point2 unproject(const Camera& camera, Point2 pixel) {
   for (int i = 0; i < kMaxSteps; ++i) {
     const Bent b = bend(camera, p);
     const double ex = b.at.x - want.x, ey = b.at.y - want.y;
-    if (std::abs(ex) < kClose && std::abs(ey) < kClose) break;
     const double det = b.xx * b.yy - b.xy * b.xy;
     p.x -= (b.yy * ex - b.xy * ey) / det;
     p.y -= (b.xx * ey - b.xy * ex) / det;
+    if (std::abs(ex) < kClose && std::abs(ey) < kClose) break;
   }
   return p;
 }

@@ -5,10 +5,9 @@
 namespace duo::synthetic {
 
 double noise(Vec3 p, std::uint32_t seed) {
-  const double fx = std::floor(p.x), fy = std::floor(p.y), fz = std::floor(p.z);
-  const int x = static_cast<int>(fx), y = static_cast<int>(fy), z = static_cast<int>(fz);
+  const int x = floor_int(p.x), y = floor_int(p.y), z = floor_int(p.z);
   const auto ease = [](double t) { return t * t * (3 - 2 * t); };
-  const double u = ease(p.x - fx), v = ease(p.y - fy), w = ease(p.z - fz);
+  const double u = ease(p.x - x), v = ease(p.y - y), w = ease(p.z - z);
   const auto mixed = [](double a, double b, double t) { return a + (b - a) * t; };
   const auto along_x = [&](int dy, int dz) {
     return mixed(unit(hash(seed, x, y + dy, z + dz)), unit(hash(seed, x + 1, y + dy, z + dz)), u);

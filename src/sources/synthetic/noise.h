@@ -21,6 +21,12 @@ inline std::uint32_t hash(std::uint32_t seed, int x, int y = 0, int z = 0) {
              (static_cast<std::uint32_t>(z) * 0xcb1ab31fU));
 }
 
+/// floor(x) for |x| < 2^31 without the call that it is before SSE4.
+inline int floor_int(double x) {
+  const int toward_zero = static_cast<int>(x);
+  return toward_zero - (x < toward_zero ? 1 : 0);
+}
+
 /// A hash as a number in [0, 1).
 inline double unit(std::uint32_t h) { return h * (1.0 / 4294967296.0); }
 
@@ -57,7 +63,7 @@ Mat3 about_x(double degrees);
 Mat3 about_y(double degrees);
 Mat3 about_z(double degrees);
 
-inline double fract(double x) { return x - std::floor(x); }
+inline double fract(double x) { return x - floor_int(x); }
 inline double smoothstep(double low, double high, double x) {
   const double t = x <= low ? 0 : x >= high ? 1 : (x - low) / (high - low);
   return t * t * (3 - 2 * t);

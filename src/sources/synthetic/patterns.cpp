@@ -26,9 +26,9 @@ double petal(double x, double y, double reach) {
 Color wallpaper(const Material& m, const TexturePoint& at) {
   const double w = m.scale_m, f = at.footprint_m / w;
   const double u = at.p_m.x / w, v = at.p_m.y / (1.3 * w);
-  const int column = static_cast<int>(std::floor(u));
+  const int column = floor_int(u);
   const double stagger = (column & 1) != 0 ? 0.5 : 0;
-  const int row = static_cast<int>(std::floor(v + stagger));
+  const int row = floor_int(v + stagger);
   const double x = fract(u) - 0.5, y = (fract(v + stagger) - 0.5) * 1.3;
   const double ax = std::abs(x), ay = std::abs(y);
   double flower = std::min(petal(ax, ay, 0.42), length(x, y) - 0.075);
@@ -59,7 +59,7 @@ Color rug(const Material& m, const TexturePoint& at) {
   } else {
     const double x = fract(at.p_m.x / 0.24 + 0.5) - 0.5, z = fract(at.p_m.z / 0.24 + 0.5) - 0.5;
     const double diamond = (std::abs(x) + std::abs(z)) * 0.24;
-    const int cell = static_cast<int>(std::floor(at.p_m.x / 0.24 + 0.5)) + static_cast<int>(std::floor(at.p_m.z / 0.24 + 0.5));
+    const int cell = floor_int(at.p_m.x / 0.24 + 0.5) + floor_int(at.p_m.z / 0.24 + 0.5);
     c = mixed(m.a, (cell & 1) != 0 ? m.b : m.c, ink(diamond - 0.085, f));
     c = mixed(c, m.a, ink(diamond - 0.055, f));
     c = mixed(c, (cell & 1) != 0 ? m.c : m.b, ink(diamond - 0.03, f));
@@ -87,7 +87,7 @@ Color book(const Material& m, const TexturePoint& at) {
   const bool on_label = (style & 2) != 0 && label < 0;
   // Glyphs: cells of 5 x 7 mm, filled or not at random, in one or two columns along the spine.
   const double gu = p.x / 0.007, gv = p.y / 0.005;
-  const bool glyph = unit(hash(at.seed, static_cast<int>(std::floor(gu)), static_cast<int>(std::floor(gv)))) > 0.45;
+  const bool glyph = unit(hash(at.seed, floor_int(gu), floor_int(gv))) > 0.45;
   const bool lettered = label < 0 && std::abs(p.x) < 0.6 * h.x && glyph;
   if (lettered) print = std::clamp(1.4 - f / 0.006, 0.3, 0.95);
   if ((style & 4) != 0) print = std::max(print, ink(std::abs(v - 0.6) * h.y - 0.007, f));
@@ -103,7 +103,7 @@ Color poster(const Material& m, const TexturePoint& at) {
   const double margin = 0.03, foot = 0.1;
   if (at.normal.z > -0.5 || h.x - std::abs(p.x) < margin || p.y + h.y < margin || h.y - p.y < margin) return grains * kPaper;
   if (h.y - p.y < foot) {
-    const int cell = static_cast<int>(std::floor(p.x / 0.011)), word = static_cast<int>(std::floor(p.x / 0.07));
+    const int cell = floor_int(p.x / 0.011), word = floor_int(p.x / 0.07);
     const bool caption = std::abs(h.y - p.y - 0.066) < 0.014 && std::abs(p.x) < 0.62 * h.x;
     const bool letter =
         caption && unit(hash(at.seed, cell)) > 0.3 && fract(p.x / 0.07 + 0.3 * unit(hash(at.seed + 1, word))) > 0.15;

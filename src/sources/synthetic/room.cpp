@@ -22,6 +22,13 @@ constexpr std::array<Palette, 4> kPalettes = {{
     {0xd4cede, 0x6d5f8f, 0xb0a5c0, 0xe5e2e4, 0x6e6a64, 0x979188, 0, 0x3f3a55, 0x94563f, 0xd6cdb8, 0x8d5f78, 0xd0a9b8, 0x2f8f8a},
 }};
 
+// Random numbers are drawn inside braces or in statements of their own, never in two arguments of one call: compilers are
+// free in the order of arguments, and the room must not depend on the compiler.
+struct Place {
+  Vec3 where_m;
+  double turned_degrees = 0;
+};
+
 // Everything that the builders below share.
 struct Build {
   Scene& scene;
@@ -29,7 +36,7 @@ struct Build {
   const Palette& palette;
   int wood_light, wood_dark, metal, plaster, white;
 
-  Group at(Vec3 where_m, double turned_degrees = 0) const { return {scene, {about_y(turned_degrees), where_m}}; }
+  Group at(const Place& place) const { return {scene, {about_y(place.turned_degrees), place.where_m}}; }
   double jitter(double reach) const { return random.uniform(-reach, reach); }
 };
 
@@ -65,7 +72,7 @@ void add_walls(const Build& b) {
 void add_window(const Build& b) {
   const double mid_y = (kWindowTop_m + kWindowSill_m) / 2, half_y = (kWindowSill_m - kWindowTop_m) / 2;
   const double mid_z = (kWindowNear_m + kWindowFar_m) / 2, half_z = (kWindowFar_m - kWindowNear_m) / 2;
-  const Group frame = b.at({kLeft_m - 0.05, mid_y, mid_z});
+  const Group frame = b.at({{kLeft_m - 0.05, mid_y, mid_z}});
   for (const double s : {-1.0, 0.0, 1.0}) frame.box({0, 0, s * (half_z - 0.02)}, {0.025, half_y, 0.02}, b.white);
   for (const double s : {-1.0, -0.25, 1.0}) frame.box({0, s * (half_y - 0.02), 0}, {0.025, 0.02, half_z}, b.white);
   frame.box({0.1, half_y + 0.012, 0}, {0.13, 0.014, half_z + 0.06}, b.white, 0.006);
@@ -80,10 +87,10 @@ void add_window(const Build& b) {
   for (int i = 0; i < kFolds; ++i) {
     const double deep = (i & 1) != 0 ? 0.03 : 0;
     const double half = (kFloor_m - kWindowTop_m) / 2 + 0.02;
-    b.at({kLeft_m + 0.08 + deep, kFloor_m - half - 0.02, kWindowFar_m + 0.02 + 1.5 * kFold_m * i})
+    b.at({{kLeft_m + 0.08 + deep, kFloor_m - half - 0.02, kWindowFar_m + 0.02 + 1.5 * kFold_m * i}})
         .add(Frustum{half, kFold_m, 1.15 * kFold_m}, {}, curtain);
   }
-  const Group rod = b.at({kLeft_m + 0.09, kWindowTop_m - 0.05, 0});
+  const Group rod = b.at({{kLeft_m + 0.09, kWindowTop_m - 0.05, 0}});
   rod.limb({0, 0, kWindowNear_m - 0.4}, {0, 0, kWindowFar_m + 0.4}, 0.012, b.metal);
 }
 
@@ -107,26 +114,26 @@ void add_back(const Build& b) {
       {.texture = Texture::kFabric, .a = srgb(0xe0d6c0), .b = srgb(0xc9bda2), .c = srgb(p.accent), .scale_m = 0.07});
   const int checked = b.scene.add({.texture = Texture::kChecker, .a = srgb(p.curtain_b), .b = srgb(p.rug_b), .scale_m = 0.055});
   const double sofa_x = -0.5 + b.jitter(0.06);
-  const Group couch = b.at({sofa_x, kFloor_m, kBack_m - 0.5}, b.jitter(3));
+  const Group couch = b.at({{sofa_x, kFloor_m, kBack_m - 0.5}, b.jitter(3)});
   add_sofa(couch, 1.55, sofa, striped, checked);
   const int fur = b.scene.add({.texture = Texture::kFur, .a = srgb(0xc08a4e), .b = srgb(0x70451f)});
   const int snout = b.scene.add({.texture = Texture::kFur, .a = srgb(0xe8cfa0), .b = srgb(0xb8945f)});
   const int eyes = b.scene.add({.a = srgb(0x15100c), .gloss = 0.8});
   const int bow = b.scene.add({.texture = Texture::kFabric, .a = srgb(0xb02030), .b = srgb(0xd04050), .scale_m = 0});
-  add_teddy(couch.at({0.1 + b.jitter(0.05), -0.44, -0.04}, about_y(b.jitter(15) - 8) * about_x(4)), 0.42, fur, snout, eyes,
-            bow);
+  const double teddy_x = 0.1 + b.jitter(0.05), teddy_turned = b.jitter(15) - 8;
+  add_teddy(couch.at({teddy_x, -0.44, -0.04}, about_y(teddy_turned) * about_x(4)), 0.42, fur, snout, eyes, bow);
 
-  add_shelf(b.at({0.86 + b.jitter(0.03), kFloor_m, kBack_m - 0.16}), b.random, b.wood_dark);
+  add_shelf(b.at({{0.86 + b.jitter(0.03), kFloor_m, kBack_m - 0.16}}), b.random, b.wood_dark);
   const int shade =
       b.scene.add({.texture = Texture::kFabric, .a = srgb(0xf4e2b8), .b = srgb(0xe8cf98), .scale_m = 0, .emission = 0.45});
-  add_floor_lamp(b.at({-1.42, kFloor_m, kBack_m - 0.2}), 1.5, b.metal, shade);
+  add_floor_lamp(b.at({{-1.42, kFloor_m, kBack_m - 0.2}}), 1.5, b.metal, shade);
 
   const std::array<std::uint32_t, 4> sky = {0xf2c879, 0x8fb8c8, 0xe8b0a0, 0xd8d0a8},
                                      hills = {0xb8503a, 0x2f5a70, 0x7a4a78, 0x4f7a58};
   const int k = b.random.pick(4);
   const int art =
       b.scene.add({.texture = Texture::kPoster, .a = srgb(sky[k]), .b = srgb(hills[k]), .c = srgb(0xf8ecc8), .gloss = 0.03});
-  const Group picture = b.at({sofa_x + 0.02 + b.jitter(0.1), -0.37, kBack_m - 0.012});
+  const Group picture = b.at({{sofa_x + 0.02 + b.jitter(0.1), -0.37, kBack_m - 0.012}});
   picture.box({}, {0.3, 0.37, 0.008}, art);
   for (const double s : {-1.0, 1.0}) {
     picture.box({s * 0.307, 0, -0.004}, {0.012, 0.389, 0.016}, b.wood_dark);
@@ -137,9 +144,9 @@ void add_back(const Build& b) {
 void add_middle(const Build& b, double t_s) {
   const Palette& p = b.palette;
   const int rug = b.scene.add({.texture = Texture::kRug, .a = srgb(p.rug_a), .b = srgb(p.rug_b), .c = srgb(p.rug_c)});
-  b.at({-0.2 + b.jitter(0.1), kFloor_m, 2.15}, b.jitter(5)).box({0, -0.006, 0}, {0.95, 0.006, 0.6}, rug, 0.005);
+  b.at({{-0.2 + b.jitter(0.1), kFloor_m, 2.15}, b.jitter(5)}).box({0, -0.006, 0}, {0.95, 0.006, 0.6}, rug, 0.005);
 
-  const Group table = b.at({-0.3 + b.jitter(0.06), kFloor_m, 2.1 + b.jitter(0.05)}, b.jitter(10));
+  const Group table = b.at({{-0.3 + b.jitter(0.06), kFloor_m, 2.1 + b.jitter(0.05)}, b.jitter(10)});
   add_table(table, {0.84, 0.4, 0.46}, b.wood_light);
   const int map =
       b.scene.add({.texture = Texture::kGlobe, .a = srgb(0x3f7fa8), .b = srgb(0x7f9a4f), .c = srgb(0xc9a66a), .gloss = 0.35});
@@ -151,20 +158,21 @@ void add_middle(const Build& b, double t_s) {
   add_mug(table.at({0.32, -0.4, -0.1}, about_y(40 + b.jitter(60))), glaze, coffee);
 
   const int cushion = b.scene.add({.texture = Texture::kKnit, .a = srgb(p.accent), .b = srgb(p.paper), .scale_m = 0.03});
-  add_chair(b.at({0.47 + b.jitter(0.04), kFloor_m, 1.9 + b.jitter(0.05)}, 140 + b.jitter(14)), b.wood_dark, cushion);
+  add_chair(b.at({{0.47 + b.jitter(0.04), kFloor_m, 1.9 + b.jitter(0.05)}, 140 + b.jitter(14)}), b.wood_dark, cushion);
 
   const int beach =
       b.scene.add({.texture = Texture::kBall, .a = srgb(0xc83a32), .b = srgb(0xe8c23c), .c = srgb(0x2f6fae), .gloss = 0.3});
   const double r = 0.13;
-  b.at({-0.98 + b.jitter(0.05), kFloor_m - r, 2.0 + b.jitter(0.06)})
-      .add(Ellipsoid{{r, r, r}}, {}, beach, about_z(b.jitter(60)) * about_x(30) * about_y(b.jitter(80)));
+  const double rolled = b.jitter(60), spun = b.jitter(80);
+  b.at({{-0.98 + b.jitter(0.05), kFloor_m - r, 2.0 + b.jitter(0.06)}})
+      .add(Ellipsoid{{r, r, r}}, {}, beach, about_z(rolled) * about_x(30) * about_y(spun));
   const int cardboard = b.scene.add({.texture = Texture::kChecker, .a = srgb(0xb89060), .b = srgb(0x3f5a4a), .scale_m = 0.07});
-  b.at({0.62 + b.jitter(0.03), kFloor_m, 2.75}, 28 + b.jitter(12)).box({0, -0.14, 0}, {0.16, 0.14, 0.13}, cardboard, 0.01);
+  b.at({{0.62 + b.jitter(0.03), kFloor_m, 2.75}, 28 + b.jitter(12)}).box({0, -0.14, 0}, {0.16, 0.14, 0.13}, cardboard, 0.01);
 }
 
 void add_front(const Build& b, double t_s) {
   // A side table at the lower left, with a plant: the nearest things, and thin ones.
-  const Group side = b.at({-0.52 + b.jitter(0.02), kFloor_m, 1.08 + b.jitter(0.02)}, 12 + b.jitter(8));
+  const Group side = b.at({{-0.52 + b.jitter(0.02), kFloor_m, 1.08 + b.jitter(0.02)}, 12 + b.jitter(8)});
   add_table(side, {0.42, 0.62, 0.36}, b.wood_dark);
   const int pot = b.scene.add({.texture = Texture::kSpeckle, .a = srgb(0xb5643c), .b = srgb(0xe6c7a0), .gloss = 0.1});
   const int soil = b.scene.add({.texture = Texture::kFur, .a = srgb(0x4a3424), .b = srgb(0x1c120b)});
@@ -175,7 +183,7 @@ void add_front(const Build& b, double t_s) {
   // A ball swings on a string from the ceiling: a physical pendulum's period for its length.
   constexpr double kString_m = 1.28, kRadius_m = 0.085, kPeriod_s = 2.27, kSwing_degrees = 9;
   const double start = b.random.uniform(0, 1);
-  const Group hung = b.at({0.14 + b.jitter(0.03), kCeiling_m, 1.3 + b.jitter(0.04)}, 25)
+  const Group hung = b.at({{0.14 + b.jitter(0.03), kCeiling_m, 1.3 + b.jitter(0.04)}, 25})
                          .at({}, about_z(kSwing_degrees * sin_turns(start + t_s / kPeriod_s)));
   const int wool = b.scene.add(
       {.texture = Texture::kBall, .a = srgb(0x2f8f8a), .b = srgb(0xf0e4c8), .c = srgb(b.palette.accent), .gloss = 0.15});
@@ -188,7 +196,8 @@ void add_front(const Build& b, double t_s) {
 
 Rigid3 world_from_rig(std::uint32_t seed) {
   Random random(seed ^ 0x5eedU);
-  return {about_y(-8 + random.uniform(-1.5, 1.5)) * about_x(-7 + random.uniform(-1, 1)), {}};
+  const double aside = -8 + random.uniform(-1.5, 1.5), down = -7 + random.uniform(-1, 1);
+  return {about_y(aside) * about_x(down), {}};
 }
 
 Scene living_room(std::uint32_t seed, double t_s) {

@@ -18,7 +18,7 @@ Span slabs(Vec3 half, const Ray& ray) {
       if (std::abs(o) > h) span.in = kNever;
       return;
     }
-    const double a = (-h - o) / d, b = (h - o) / d;
+    const double inverse = 1 / d, a = (-h - o) * inverse, b = (h - o) * inverse;
     span.in = std::max(span.in, std::min(a, b));
     span.out = std::min(span.out, std::max(a, b));
   };

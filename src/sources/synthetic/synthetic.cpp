@@ -47,8 +47,12 @@ Mounting mounting(const SyntheticSetup& setup) {
   if (setup.ideal) return {{ideal, {}}, {ideal, {{}, {kBaseline_m, 0, 0}}}};
   Random random(setup.seed ^ 0xca3e4aU);
   const auto turned = [&](double degrees) {
-    const auto either_way = [&] { return random.uniform(0.3, 1.0) * (random.pick(2) == 0 ? -degrees : degrees); };
-    return about_x(either_way()) * about_y(either_way()) * about_z(either_way());
+    const auto either_way = [&] {
+      const double size = random.uniform(0.3, 1.0);
+      return random.pick(2) == 0 ? -size * degrees : size * degrees;
+    };
+    const double x = either_way(), y = either_way(), z = either_way();  // in this order whatever the compiler
+    return about_x(x) * about_y(y) * about_z(z);
   };
   const auto off = [&] { return random.uniform(-0.003, 0.003); };
   const Camera left = made_camera(setup.size, random), right = made_camera(setup.size, random);

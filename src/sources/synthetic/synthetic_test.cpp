@@ -133,6 +133,7 @@ TEST(SyntheticRig, IsMountedLikeByHand) {
     EXPECT_LT(degrees, 4);
     EXPECT_LT(rig.right_from_left.t_m.x, -0.12);
     EXPECT_FALSE(rig.left == rig.right);
+    EXPECT_TRUE(check_rig(rig, "synthetic").has_value());
   }
   const Rig ideal = synthetic_rig({.ideal = true});
   EXPECT_EQ(ideal.right_from_left, (Rigid3{{}, {-0.127, 0, 0}}));
@@ -166,18 +167,18 @@ TEST(SyntheticRender, DepthOfWallAndBallByHand) {
 }
 
 TEST(SyntheticPicture, WarpedByTheTrueDisparityTheRightIsTheLeft) {
-  const SyntheticSetup setup{.size = {320, 240}, .ideal = true};
+  const SyntheticSetup setup{.size = {480, 360}, .ideal = true};
   const SyntheticPair got = render_synthetic(setup, 2);
   const Rectified geometry = synthetic_rectified(setup);
-  EXPECT_EQ(geometry.focal_px, 280);
+  EXPECT_EQ(geometry.focal_px, 420);
   double right_shift = 0, wrong_shift = 0;
   int count = 0, off = 0, in_view = 0;
-  for (int y = 0; y < 240; ++y)
-    for (int x = 0; x < 320; ++x) {
+  for (int y = 0; y < 360; ++y)
+    for (int x = 0; x < 480; ++x) {
       const double d = got.disparity_px.at(y, x);
       ASSERT_NEAR(d, geometry.focal_px * geometry.baseline_m / got.depth_left_m.at(y, x), 1e-4);
       ASSERT_GT(d, 0);
-      ASSERT_LT(d, 96 * 320 / 640);
+      ASSERT_LT(d, 96 * 480 / 640);
       in_view += x - d >= 0;
       if (got.seen_by_both.at(y, x) == 0) continue;
       ASSERT_GE(x - d, -1e-4);
@@ -187,7 +188,7 @@ TEST(SyntheticPicture, WarpedByTheTrueDisparityTheRightIsTheLeft) {
       wrong_shift += std::abs(left - sampled(got.pair.right.pixels, std::max(x - d - 3, 0.0), y));
       ++count;
     }
-  EXPECT_GT(count, 0.75 * 320 * 240);
+  EXPECT_GT(count, 0.75 * 480 * 360);
   EXPECT_LT(count, in_view);  // something is hidden
   EXPECT_LT(right_shift / count, 3.5);
   EXPECT_LT(off, 0.01 * count);
@@ -196,20 +197,20 @@ TEST(SyntheticPicture, WarpedByTheTrueDisparityTheRightIsTheLeft) {
 
 // A raw pixel, taken through lens, depth and rig, lands in the raw right picture on the same spot.
 TEST(SyntheticPicture, RawDepthAgreesWithTheRig) {
-  const SyntheticPair got = render_synthetic({.size = {320, 240}, .seed = 2, .t_s = 0.7}, 2);
+  const SyntheticPair got = render_synthetic({.size = {480, 360}, .seed = 2, .t_s = 0.7}, 2);
   EXPECT_TRUE(got.disparity_px.empty());
   std::vector<double> right_place, wrong_place;
-  for (int y = 0; y < 240; ++y)
-    for (int x = 0; x < 320; ++x) {
+  for (int y = 0; y < 360; ++y)
+    for (int x = 0; x < 480; ++x) {
       const Point2 on_plane = unproject(got.rig.left, {static_cast<double>(x), static_cast<double>(y)});
       const Vec3 p = got.rig.right_from_left * (got.depth_left_m.at(y, x) * Vec3{on_plane.x, on_plane.y, 1});
       const Point2 at = project(got.rig.right, {p.x / p.z, p.y / p.z});
-      if (at.x < 0 || at.y < 0 || at.x > 319 || at.y > 233) continue;
+      if (at.x < 0 || at.y < 0 || at.x > 479 || at.y > 353) continue;
       const double left = gray(got.pair.left.pixels.at(y, x));
       right_place.push_back(std::abs(left - sampled(got.pair.right.pixels, at.x, at.y)));
       wrong_place.push_back(std::abs(left - sampled(got.pair.right.pixels, at.x, at.y + 5)));
     }
-  ASSERT_GT(right_place.size(), 50000U);
+  ASSERT_GT(right_place.size(), 120000U);
   // The median passes over what the right camera cannot see; exposure, vignetting and noise differ.
   const auto median = [](std::vector<double>& v) {
     std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());

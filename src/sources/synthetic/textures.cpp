@@ -37,9 +37,9 @@ Color grain(const Material& m, const TexturePoint& at, Vec3 p, std::uint32_t pie
 Color planks(const Material& m, const TexturePoint& at) {
   constexpr double kWidth_m = 0.115, kLength_m = 1.1;
   const double v = at.p_m.z / kWidth_m;
-  const int row = static_cast<int>(std::floor(v));
+  const int row = floor_int(v);
   const double u = at.p_m.x / kLength_m + unit(hash(at.seed, row));
-  const int column = static_cast<int>(std::floor(u));
+  const int column = floor_int(u);
   const std::uint32_t board = hash(at.seed, row, column);
   const Vec3 p = at.p_m + Vec3{5 * unit(board), 3 * unit(mix(board)), 0};
   const Color wood = (0.72 + 0.5 * unit(mix(board + 1))) * grain(m, at, p, board);
@@ -59,11 +59,11 @@ Color wood(const Material& m, const TexturePoint& at) {
 
 Color fabric(const Material& m, const TexturePoint& at) {
   constexpr double kThreads_per_m = 170;
-  const double keep = std::clamp(1.6 - at.footprint_m * kThreads_per_m, 0.0, 1.0);
+  const double keep = std::clamp(2 - 6 * at.footprint_m * kThreads_per_m, 0.0, 1.0);
   // Threads in all three directions: whichever face is seen shows warp and weft.
-  const double weave = std::floor(fract(at.p_m.x * kThreads_per_m / 2) * 2) +
-                       std::floor(fract(at.p_m.y * kThreads_per_m / 2) * 2) +
-                       std::floor(fract(at.p_m.z * kThreads_per_m / 2) * 2);
+  const double weave = floor_int(fract(at.p_m.x * kThreads_per_m / 2) * 2) +
+                       floor_int(fract(at.p_m.y * kThreads_per_m / 2) * 2) +
+                       floor_int(fract(at.p_m.z * kThreads_per_m / 2) * 2);
   const double over = weave == 1 || weave == 3 ? 1 : 0;
   const double heather = mottle(at, 55, 3, 1) - 0.5, wear = mottle(at, 6, 2, 2) - 0.5;
   Color c = mixed(m.a, m.b, std::clamp(0.5 + keep * 0.5 * (over - 0.5) + 1.5 * heather, 0.0, 1.0));
@@ -86,7 +86,7 @@ Color fur(const Material& m, const TexturePoint& at) {
 }
 
 Color checker(const Material& m, const TexturePoint& at) {
-  const auto cell = [&](double x) { return static_cast<int>(std::floor(x / m.scale_m + 0.5)); };
+  const auto cell = [&](double x) { return floor_int(x / m.scale_m + 0.5); };
   const int x = cell(at.p_m.x), y = cell(at.p_m.y), z = cell(at.p_m.z);
   const Color c = ((x + y + z) & 1) != 0 ? m.a : m.b;
   return (0.8 + 0.4 * mottle(at, 60, 4, 6)) * c;
