@@ -11,7 +11,7 @@ namespace duo {
 struct SyntheticSetup {
   Size size = {640, 480};
   std::uint32_t seed = 1;   // layout, textures, mounting errors and noise
-  double t_s = 0;           // moment of the scene
+  double t_s = 0;           // moment of the scene: a ball swings, a globe turns
   bool ideal = false;       // true: rectified pinhole cameras without noise or distortion
 };
 
@@ -31,7 +31,7 @@ struct SyntheticPair {
 /// Renders one moment. The same setup gives the same bits on every machine and with any number of threads.
 SyntheticPair render_synthetic(const SyntheticSetup& setup, int threads);
 
-/// The rig of a setup without rendering.
+/// The rig of a setup without rendering: two webcams mounted by hand, or the perfect pair when `ideal`.
 Rig synthetic_rig(const SyntheticSetup& setup);
 
 /// The rectified geometry of the ideal pair.
