@@ -1,3 +1,4 @@
 # Explicit names, no glob: what is not listed is not built.
 set(dir ${PROJECT_SOURCE_DIR}/src/matchers/pyramid)
 target_sources(duoptic PRIVATE ${dir}/pyramid.cpp ${dir}/pyramid_params.cpp ${dir}/pyramid_ref.cpp ${dir}/pyramid_simd.cpp)
+duoptic_test(matchers/pyramid ${dir}/pyramid_test.cpp)

@@ -1,0 +1,200 @@
+// From pair to frame: engines agree, nothing is allocated after the first frame, the synthetic room's truth is met, and wrong
+// setups are refused before the first frame.
+
+#include "duoptic/engine.h"
+
+#include <cmath>
+
+#include "duoptic/synthetic.h"
+#include "tests/agree.h"
+#include "tests/allocations.h"
+
+namespace duo {
+namespace {
+
+std::unique_ptr<Engine> prepared(const char* name, int threads, const duo::Setup& setup) {
+  auto engine = make_engine(name, threads);
+  EXPECT_TRUE(engine) << engine.error().what;
+  const auto ready = (*engine)->prepare(setup);
+  EXPECT_TRUE(ready) << ready.error().what;
+  return std::move(*engine);
+}
+
+const Frame& run(Engine& engine, const Pair& pair) {
+  engine.submit(pair);
+  return engine.collect();
+}
+
+duo::Setup raw_setup(const SyntheticPair& scene, const char* preset) {
+  duo::Setup setup;
+  setup.size = scene.pair.left.pixels.size();
+  setup.rig = scene.rig;
+  setup.preset = preset;
+  setup.max_disparity = 48;
+  setup.denoise = Denoise::kBoth;
+  setup.fill = true;
+  setup.wants = {.color = true, .depth = true};
+  return setup;
+}
+
+TEST(Engine, RefAndSimdAgreeOnRawPictures) {
+  SyntheticSetup synthetic;
+  synthetic.size = {160, 120};
+  const SyntheticPair scene = render_synthetic(synthetic, 2);
+  for (const char* preset : {"default", "thesis"}) {
+    const duo::Setup setup = raw_setup(scene, preset);
+    const auto reference = prepared("ref", 1, setup);
+    const Frame& want = run(*reference, scene.pair);
+    test::each_target([&](const std::string& target) {
+      for (const int threads : {1, 2}) {
+        const auto simd = prepared("simd", threads, setup);
+        const Frame& got = run(*simd, scene.pair);
+        const std::string who = std::string(preset) + " " + target + " threads " + std::to_string(threads);
+        test::expect_same<std::uint8_t>(want.left, got.left, who + " left");
+        test::expect_same<std::uint8_t>(want.right, got.right, who + " right");
+        test::expect_same<std::uint16_t>(want.disparity.d_q4, got.disparity.d_q4, who + " disparity");
+        test::expect_same<std::uint8_t>(want.disparity.origin, got.disparity.origin, who + " origin");
+        test::expect_same<std::uint16_t>(want.depth_mm, got.depth_mm, who + " depth");
+      }
+    });
+  }
+}
+
+TEST(Engine, AllocatesNothingAfterTheFirstFrame) {
+  SyntheticSetup synthetic;
+  synthetic.size = {320, 240};
+  const SyntheticPair scene = render_synthetic(synthetic, 2);
+  for (const char* preset : {"default", "thesis"}) {
+    const auto engine = prepared("simd", 2, raw_setup(scene, preset));
+    run(*engine, scene.pair);
+    const long before = test::allocations;
+    for (int i = 0; i < 3; ++i) run(*engine, scene.pair);
+    EXPECT_EQ(test::allocations - before, 0) << preset;
+  }
+  const long before = test::allocations;
+  Image<std::uint8_t> counted({8, 8});
+  EXPECT_GT(test::allocations - before, 0) << "the counter itself works";
+}
+
+struct Score {
+  double bad = 0, covered = 0;
+};
+
+/// Share of pixels that both cameras see whose disparity is off by more than one pixel, holes bad; and the share with a disparity.
+Score score(const SyntheticPair& scene, const Disparity& disparity) {
+  double seen = 0, bad = 0, known = 0;
+  for (int y = 0; y < scene.disparity_px.height(); ++y)
+    for (int x = 0; x < scene.disparity_px.width(); ++x) {
+      if (scene.seen_by_both.at(y, x) == 0) continue;
+      ++seen;
+      const std::uint16_t d = disparity.d_q4.at(y, x);
+      known += d != Disparity::kNone;
+      bad += d == Disparity::kNone || std::abs(d / 16.0 - scene.disparity_px.at(y, x)) > 1.0;
+    }
+  return {bad / seen, known / seen};
+}
+
+TEST(Engine, MeetsTheTruthOfTheSyntheticRoom) {
+  SyntheticSetup synthetic;
+  synthetic.ideal = true;
+  const SyntheticPair scene = render_synthetic(synthetic, 2);
+  duo::Setup setup;
+  setup.size = synthetic.size;
+  setup.max_disparity = 96;
+  const auto engine = prepared("simd", 2, setup);
+  const Score now = score(scene, run(*engine, scene.pair).disparity);
+  EXPECT_LT(now.bad, 0.15);
+  EXPECT_GT(now.covered, 0.9);
+  setup.preset = "thesis";
+  const auto thesis = prepared("simd", 2, setup);
+  const Score then = score(scene, run(*thesis, scene.pair).disparity);
+  EXPECT_LT(then.bad, 0.4);
+  EXPECT_GT(then.bad, now.bad) << "the default preset is the better one";
+}
+
+// Metres, not only pixels: the raw pair through its rig gives the depth that the renderer knows at the same raw pixel.
+TEST(Engine, RawDepthIsMetric) {
+  SyntheticSetup synthetic;
+  const SyntheticPair scene = render_synthetic(synthetic, 2);
+  duo::Setup setup = raw_setup(scene, "default");
+  setup.max_disparity = 96;
+  setup.fill = false;
+  setup.denoise = Denoise::kAuto;
+  const auto engine = prepared("simd", 2, setup);
+  const Frame& frame = run(*engine, scene.pair);
+  const Rectified& geometry = *engine->rectified();
+  std::vector<double> errors;
+  for (int y = 0; y < frame.depth_mm.height(); y += 4)
+    for (int x = 0; x < frame.depth_mm.width(); x += 4) {
+      if (frame.depth_mm.at(y, x) == 0) continue;
+      // The point in the rig frame, turned to the raw left camera, through its lens to a raw pixel.
+      const double z = frame.depth_mm.at(y, x) / 1000.0;
+      const Vec3 in_rig = {(x - geometry.cx_px) * z / geometry.focal_px, (y - geometry.cy_px) * z / geometry.focal_px, z};
+      const Vec3 p = transposed(geometry.rig_from_left) * in_rig;
+      const Camera& camera = scene.rig.left;
+      const double u = p.x / p.z, v = p.y / p.z, r2 = u * u + v * v;
+      const auto& k = camera.distortion;
+      const double radial = (1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) / (1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])));
+      const double px = camera.fx_px * (u * radial + 2 * k[2] * u * v + k[3] * (r2 + 2 * u * u)) + camera.cx_px;
+      const double py = camera.fy_px * (v * radial + k[2] * (r2 + 2 * v * v) + 2 * k[3] * u * v) + camera.cy_px;
+      const int xi = static_cast<int>(std::lround(px)), yi = static_cast<int>(std::lround(py));
+      if (xi < 0 || yi < 0 || xi >= synthetic.size.width || yi >= synthetic.size.height) continue;
+      errors.push_back(std::abs(p.z - scene.depth_left_m.at(yi, xi)) / p.z);
+    }
+  ASSERT_GT(errors.size(), 5000U);
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
+  EXPECT_LT(errors[errors.size() / 2], 0.01) << "median relative depth error";
+}
+
+void expect_refused(const Setup& setup, const std::string& word) {
+  auto engine = make_engine("simd", 1);
+  const auto result = (*engine)->prepare(setup);
+  ASSERT_FALSE(result);
+  EXPECT_NE(result.error().what.find(word), std::string::npos) << result.error().what;
+}
+
+TEST(Engine, RefusesWhatCannotWork) {
+  duo::Setup good;
+  good.size = {64, 48};
+  duo::Setup setup = good;
+  setup.matcher = "guess";
+  expect_refused(setup, "guess");
+  setup = good;
+  setup.preset = "guess";
+  expect_refused(setup, "guess");
+  setup = good;
+  setup.max_disparity = 0;
+  expect_refused(setup, "max disparity 0");
+  setup.max_disparity = 1 << 20;
+  expect_refused(setup, "max disparity");
+  setup = good;
+  setup.parameters = {{"levels", 99}};
+  expect_refused(setup, "levels");
+  setup = good;
+  setup.wants.depth = true;
+  expect_refused(setup, "needs a rig");
+  setup = good;
+  setup.rig = synthetic_rig({});
+  expect_refused(setup, "640x480");
+  setup = good;
+  setup.size = {};
+  expect_refused(setup, "no pixels");
+  EXPECT_FALSE(make_engine("guess", 1));
+  EXPECT_FALSE(make_engine("simd", 0));
+}
+
+TEST(Engine, SmallestPictures) {
+  for (const Size size : {Size{1, 1}, {2, 1}, {1, 9}, {7, 3}}) {
+    duo::Setup setup;
+    setup.size = size;
+    setup.fill = true;
+    Pair pair;
+    pair.left.pixels = Image<Rgb8>(size);
+    pair.right.pixels = Image<Rgb8>(size);
+    const auto engine = prepared("simd", 2, setup);
+    EXPECT_EQ(run(*engine, pair).disparity.d_q4.size(), size);
+  }
+}
+
+}  // namespace
+}  // namespace duo
