@@ -94,6 +94,27 @@ TEST(Recorder, OrdersWhatDepends) {
   });
 }
 
+// What a kernel reads may not be overwritten before it has been read; validation sees it if it may.
+TEST(Recorder, KeepsInputsUntilTheyAreRead) {
+  test::each_device([](vk::Device& device, const std::string& where) {
+    const Size size{67, 21};
+    const auto before = test::constant<std::uint8_t>(size, 3), after = test::constant<std::uint8_t>(size, 200);
+    const auto median = must(vk::Median::make(device));
+    const OnDevice<std::uint8_t> a(device, before, "a"), b(device, size, "b"), next(device, after, "next");
+    auto recorder = must(vk::Recorder::make(device));
+    recorder.begin();
+    for (const auto* picture : {&a, &b, &next}) picture->record_upload(recorder);
+    median.record(recorder, a.view(), b.view(), size);
+    recorder.copy(*next.view().buffer, *a.view().buffer, a.view().buffer->bytes());
+    a.record_download(recorder);
+    b.record_download(recorder);
+    must(recorder.end());
+    must(recorder.run());
+    test::expect_same<std::uint8_t>(before, b.pixels(where), "median" + where);
+    test::expect_same<std::uint8_t>(after, a.pixels(where), "copy" + where);
+  });
+}
+
 TEST(Recorder, MakesMoreSetsThanOnePoolHolds) {
   test::each_device([](vk::Device& device, const std::string& where) {
     const Size size{5, 4};
