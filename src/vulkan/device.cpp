@@ -32,8 +32,10 @@ Result<std::unique_ptr<Device>> Device::make(std::shared_ptr<Instance> instance,
   auto info = structure<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &f11);
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
-  if (const VkResult r = fn.vkCreateDevice(physical.handle, &info, nullptr, &device->handle_); r != VK_SUCCESS)
+  VkDevice handle = VK_NULL_HANDLE;
+  if (const VkResult r = fn.vkCreateDevice(physical.handle, &info, nullptr, &handle); r != VK_SUCCESS)
     return device->error("opening the device", r);
+  device->handle_ = handle;
 
 #define DUO_VK_LOAD(name) device->fn_.name = reinterpret_cast<PFN_##name>(fn.vkGetDeviceProcAddr(device->handle_, #name));
   DUO_VK_DEVICE_FUNCTIONS(DUO_VK_LOAD)
@@ -89,7 +91,7 @@ bool Device::finished(Ticket ticket) const {
 }
 
 Error Device::error(const std::string& tried, VkResult why) const {
-  const bool lost = why == VK_ERROR_DEVICE_LOST || why == VK_TIMEOUT;
+  const bool lost = why == VK_ERROR_DEVICE_LOST || why == VK_TIMEOUT || why == VK_NOT_READY;
   return {lost ? ErrorCode::kDeviceLost : ErrorCode::kUnsupported,
           fmt::format("{} on {}: {}: {}", tried, physical_.info.name, describe(why),
                       lost ? "start again, or use a CPU engine" : "use smaller pictures, another device or a CPU engine")};

@@ -38,6 +38,9 @@ class Device {
   std::uint32_t queue_family() const { return physical_.queue_family; }
   /// Nanoseconds of one tick of the device's clock; 0 where it has none.
   double tick_ns() const { return physical_.tick_ns; }
+  double elapsed_ns(std::uint64_t from, std::uint64_t to) const {
+    return static_cast<double>((to - from) & physical_.tick_mask) * physical_.tick_ns;
+  }
   /// "`tried` on NAME: why"
   Error error(const std::string& tried, VkResult why) const;
   /// The name that validation messages and debuggers show.

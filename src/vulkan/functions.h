@@ -5,34 +5,30 @@
 #define VK_NO_PROTOTYPES
 #include <vulkan/vulkan_core.h>
 
-#define DUO_VK_INSTANCE_FUNCTIONS(X) \
-  X(vkDestroyInstance)               \
-  X(vkEnumeratePhysicalDevices)      \
-  X(vkGetPhysicalDeviceProperties)   \
-  X(vkGetPhysicalDeviceProperties2)  \
-  X(vkGetPhysicalDeviceFeatures2)    \
-  X(vkGetPhysicalDeviceMemoryProperties) X(vkGetPhysicalDeviceQueueFamilyProperties) X(vkCreateDevice) X(vkGetDeviceProcAddr)
+// clang-format off
+#define DUO_VK_INSTANCE_FUNCTIONS(X)                                                                                   \
+  X(vkDestroyInstance) X(vkEnumeratePhysicalDevices) X(vkGetPhysicalDeviceProperties)                                  \
+  X(vkGetPhysicalDeviceProperties2) X(vkGetPhysicalDeviceFeatures2) X(vkGetPhysicalDeviceMemoryProperties)             \
+  X(vkGetPhysicalDeviceQueueFamilyProperties) X(vkCreateDevice) X(vkGetDeviceProcAddr)
 
 // Only there when validation is on.
-#define DUO_VK_DEBUG_FUNCTIONS(X) \
+#define DUO_VK_DEBUG_FUNCTIONS(X)                                                                                      \
   X(vkCreateDebugUtilsMessengerEXT) X(vkDestroyDebugUtilsMessengerEXT) X(vkSetDebugUtilsObjectNameEXT)
 
-#define DUO_VK_DEVICE_FUNCTIONS(X)                                                                                           \
-  X(vkDestroyDevice)                                                                                                         \
-  X(vkGetDeviceQueue)                                                                                                        \
-  X(vkQueueSubmit2)                                                                                                          \
-  X(vkCreateSemaphore)                                                                                                       \
-  X(vkDestroySemaphore)                                                                                                      \
-  X(vkWaitSemaphores) X(vkGetSemaphoreCounterValue) X(vkCreateBuffer) X(vkDestroyBuffer) X(vkGetBufferMemoryRequirements)    \
-      X(vkBindBufferMemory) X(vkAllocateMemory) X(vkFreeMemory) X(vkMapMemory) X(vkCreateShaderModule)                       \
-          X(vkDestroyShaderModule) X(vkCreateComputePipelines) X(vkDestroyPipeline) X(vkCreatePipelineLayout)                \
-              X(vkDestroyPipelineLayout) X(vkCreateDescriptorSetLayout) X(vkDestroyDescriptorSetLayout)                      \
-                  X(vkCreateDescriptorPool) X(vkDestroyDescriptorPool) X(vkAllocateDescriptorSets) X(vkUpdateDescriptorSets) \
-                      X(vkCreateCommandPool) X(vkDestroyCommandPool) X(vkResetCommandPool) X(vkAllocateCommandBuffers)       \
-                          X(vkBeginCommandBuffer) X(vkEndCommandBuffer) X(vkCmdPipelineBarrier2) X(vkCmdCopyBuffer)          \
-                              X(vkCmdFillBuffer) X(vkCmdBindPipeline) X(vkCmdBindDescriptorSets) X(vkCmdPushConstants)       \
-                                  X(vkCmdDispatch) X(vkCreateQueryPool) X(vkDestroyQueryPool) X(vkCmdResetQueryPool)         \
-                                      X(vkCmdWriteTimestamp2) X(vkGetQueryPoolResults)
+#define DUO_VK_DEVICE_FUNCTIONS(X)                                                                                     \
+  X(vkDestroyDevice) X(vkGetDeviceQueue) X(vkQueueSubmit2)                                                             \
+  X(vkCreateSemaphore) X(vkDestroySemaphore) X(vkWaitSemaphores) X(vkGetSemaphoreCounterValue)                         \
+  X(vkCreateBuffer) X(vkDestroyBuffer) X(vkGetBufferMemoryRequirements) X(vkBindBufferMemory)                          \
+  X(vkAllocateMemory) X(vkFreeMemory) X(vkMapMemory)                                                                   \
+  X(vkCreateShaderModule) X(vkDestroyShaderModule) X(vkCreateComputePipelines) X(vkDestroyPipeline)                    \
+  X(vkCreatePipelineLayout) X(vkDestroyPipelineLayout)                                                                 \
+  X(vkCreateDescriptorSetLayout) X(vkDestroyDescriptorSetLayout)                                                       \
+  X(vkCreateDescriptorPool) X(vkDestroyDescriptorPool) X(vkAllocateDescriptorSets) X(vkUpdateDescriptorSets)           \
+  X(vkCreateCommandPool) X(vkDestroyCommandPool) X(vkResetCommandPool) X(vkAllocateCommandBuffers)                     \
+  X(vkBeginCommandBuffer) X(vkEndCommandBuffer) X(vkCmdPipelineBarrier2) X(vkCmdCopyBuffer) X(vkCmdFillBuffer)         \
+  X(vkCmdBindPipeline) X(vkCmdBindDescriptorSets) X(vkCmdPushConstants) X(vkCmdDispatch)                               \
+  X(vkCreateQueryPool) X(vkDestroyQueryPool) X(vkCmdResetQueryPool) X(vkCmdWriteTimestamp2) X(vkGetQueryPoolResults)
+// clang-format on
 
 namespace duo::vk {
 

@@ -114,9 +114,11 @@ Result<void> Instance::create(Validation validation, PFN_vkGetInstanceProcAddr g
     info.enabledExtensionCount = 1;
     info.ppEnabledExtensionNames = &extension;
   }
-  if (const VkResult r = create(&info, nullptr, &handle_); r != VK_SUCCESS)
+  VkInstance handle = VK_NULL_HANDLE;
+  if (const VkResult r = create(&info, nullptr, &handle); r != VK_SUCCESS)
     return Error{ErrorCode::kNotFound,
                  fmt::format("opening Vulkan: {}: install a driver (mesa-vulkan-drivers), or use a CPU engine", describe(r))};
+  handle_ = handle;
 
 #define DUO_VK_LOAD(name) fn_.name = reinterpret_cast<PFN_##name>(get(handle_, #name));
   DUO_VK_INSTANCE_FUNCTIONS(DUO_VK_LOAD)
@@ -190,7 +192,10 @@ PhysicalDevice Instance::inspect(VkPhysicalDevice handle) const {
   need(compute != families.end(), "a compute queue");
   if (compute == families.end()) return out;
   out.queue_family = static_cast<std::uint32_t>(compute - families.begin());
-  if (compute->timestampValidBits > 0) out.tick_ns = basic.limits.timestampPeriod;
+  if (compute->timestampValidBits > 0) {
+    out.tick_ns = basic.limits.timestampPeriod;
+    out.tick_mask = ~std::uint64_t{0} >> (64 - compute->timestampValidBits);
+  }
   return out;
 }
 

@@ -20,7 +20,8 @@ struct PhysicalDevice {
   VkPhysicalDevice handle = VK_NULL_HANDLE;
   DeviceInfo info;
   std::uint32_t queue_family = 0;
-  double tick_ns = 0;  // of its time stamps; 0: it has none
+  double tick_ns = 0;           // of its time stamps; 0: it has none
+  std::uint64_t tick_mask = 0;  // the bits of a time stamp that count
 };
 
 /// The loader stays open until the program ends: some drivers cannot be unloaded cleanly.

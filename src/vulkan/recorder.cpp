@@ -32,7 +32,10 @@ Recorder::~Recorder() {
 }
 
 void Recorder::begin() {
-  DUO_CHECK(device_->finished(last_));
+  if (!device_->finished(last_)) {
+    failed_ = device_->error("recording anew", VK_NOT_READY);
+    return;
+  }
   sets_.clear();
   descriptor_pools_.clear();
   unordered_.clear();
@@ -80,7 +83,7 @@ Result<void> Recorder::end() {
 
 Result<Ticket> Recorder::submit() {
   DUO_TRY(failed_);
-  DUO_CHECK(device_->finished(last_));
+  if (!device_->finished(last_)) return device_->error("submitting a recording again", VK_NOT_READY);
   DUO_TRY_ASSIGN(last_, device_->submit(commands_));
   return last_;
 }

@@ -42,7 +42,7 @@ class Recorder {
   Recorder& operator=(Recorder&&) = delete;
   ~Recorder();  // waits for its work
 
-  /// Starts anew; the work recorded before must be finished.
+  /// Starts anew. An error, like that of submit() and run(), if the work recorded before is not finished.
   void begin();
   /// Runs `kernel` in `groups` workgroups; the order of `uses` is that of the kernel's bindings.
   template <class Push>
@@ -53,10 +53,12 @@ class Recorder {
   void copy(const Buffer& src, const Buffer& dst, std::size_t bytes);
   Result<void> end();
 
-  /// Starts the recorded work; its last submission must be finished.
+  /// Starts the recorded work.
   Result<Ticket> submit();
   /// submit() and wait.
   Result<void> run(std::int64_t timeout_ns = kWaitNs);
+  /// No command may be recorded after an error.
+  bool ok() const { return failed_.has_value(); }
   VkCommandBuffer commands() const { return commands_; }
 
  private:

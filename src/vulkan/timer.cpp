@@ -15,7 +15,7 @@ Result<Timer> Timer::make(const Device& device, int stages) {
 
 void Timer::start(Recorder& recorder) {
   names_.clear();
-  if (device_->tick_ns() == 0) return;
+  if (device_->tick_ns() == 0 || !recorder.ok()) return;
   device_->fn().vkCmdResetQueryPool(recorder.commands(), queries_.get(), 0, static_cast<std::uint32_t>(capacity_) + 1);
   stamp(recorder, 0);
 }
@@ -27,7 +27,7 @@ void Timer::stage(Recorder& recorder, std::string name) {
 }
 
 void Timer::stamp(Recorder& recorder, std::size_t index) {
-  if (device_->tick_ns() == 0) return;
+  if (device_->tick_ns() == 0 || !recorder.ok()) return;
   device_->fn().vkCmdWriteTimestamp2(recorder.commands(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_.get(),
                                      static_cast<std::uint32_t>(index));
 }
@@ -41,8 +41,7 @@ Result<std::vector<Timer::Time>> Timer::read() const {
         r != VK_SUCCESS)
       return device_->error("reading a timer", r);
   std::vector<Time> times;
-  for (std::size_t i = 0; i < names_.size(); ++i)
-    times.push_back({names_[i], static_cast<double>(ticks[i + 1] - ticks[i]) * device_->tick_ns()});
+  for (std::size_t i = 0; i < names_.size(); ++i) times.push_back({names_[i], device_->elapsed_ns(ticks[i], ticks[i + 1])});
   return times;
 }
 
