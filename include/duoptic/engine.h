@@ -15,7 +15,7 @@
 namespace duo {
 
 enum class Denoise : std::uint8_t {
-  kAuto,      // kMedian for raw pictures (with a rig), kNone for pairs that come rectified
+  kAuto,      // kGaussian for raw pictures (with a rig), kNone for pairs that come rectified
   kNone,
   kMedian,    // median 3x3
   kGaussian,  // 5x5 binomial

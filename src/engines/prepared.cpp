@@ -7,7 +7,7 @@ namespace duo {
 namespace {
 
 // What raw webcam pictures get when nothing is asked for; docs/measurements.md has the comparison.
-constexpr Denoise kRawDenoise = Denoise::kMedian;
+constexpr Denoise kRawDenoise = Denoise::kGaussian;
 
 Error bad(std::string what) { return {ErrorCode::kBadInput, std::move(what)}; }
 

@@ -25,7 +25,7 @@ struct PyramidParams {
   int tolerance = 1;
   int reach = 1;
   int medians = 1;
-  int speckle = 101;
+  int speckle = 200;
   int speckle_step_q4 = 16;
 };
 
