@@ -1,0 +1,213 @@
+// duoptic bench: time of each stage and of whole frames, beside OpenCV's matchers in the same process on the same pair.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "command.h"
+#include "duoptic/synthetic.h"
+#include "peers.h"
+#include "timing.h"
+
+namespace duo::app {
+namespace {
+
+constexpr char kFooter[] =
+    "The pair is our synthetic room seen by two distorted, noisy cameras. A whole frame goes from decoded pictures to depth:\n"
+    "denoise, rectify, match, check, depth. OpenCV gets the same rectified pair; its time is its matching call alone, and is\n"
+    "compared with our whole frame and with our matching alone. All contestants take turns in one process; medians.\n\n"
+    "Examples:\n"
+    "  duoptic bench\n"
+    "  duoptic bench --engine simd --size 640x480 --repeat 31 --json";
+
+constexpr int kMaxDisparity = 128;
+// What a whole frame does beside matching.
+const std::set<std::string> kNotMatching = {"gray", "median", "gaussian", "rectify", "depth", "color"};
+
+struct Options {
+  std::string engine = "both", size = "both";
+  int repeat = 11;
+  bool json = false;
+};
+
+struct Contestant {
+  std::string name;
+  std::vector<Times> whole, matching;                              // of each run
+  std::vector<std::pair<std::string, std::vector<Times>>> stages;  // in the order of the frame
+};
+struct Table {
+  Size size;
+  int threads = 1;
+  std::vector<Contestant> ours, peers;
+};
+
+void add_run(Contestant& c, const Frame& frame, Times whole) {
+  c.whole.push_back(whole);
+  Times matching;
+  std::size_t n = 0;
+  for (const StageTime& stage : frame.stages) {
+    if (stage.wall_ns == 0) break;
+    const Times t{static_cast<double>(stage.wall_ns) / 1e6, static_cast<double>(stage.cpu_ns) / 1e6};
+    if (!kNotMatching.contains(stage.stage)) {
+      matching.wall_ms += t.wall_ms;
+      matching.cpu_ms += t.cpu_ms;
+    }
+    if (n == c.stages.size()) c.stages.emplace_back(stage.stage, std::vector<Times>());
+    c.stages[n++].second.push_back(t);
+  }
+  c.matching.push_back(matching);
+}
+
+struct Ours {
+  std::unique_ptr<Engine> engine;
+  int repeat;
+};
+
+Result<Ours> make_ours(const std::string& engine_name, const std::string& preset, const SyntheticPair& input, int threads,
+                       int repeat) {
+  DUO_TRY_ASSIGN(auto engine, make_engine(engine_name, threads));
+  Setup setup;
+  setup.size = input.pair.left.pixels.size();
+  setup.rig = input.rig;
+  setup.preset = preset;
+  setup.max_disparity = kMaxDisparity;
+  setup.wants = {.color = false, .depth = true};
+  setup.time_stages = true;
+  DUO_TRY(engine->prepare(setup));
+  return Ours{std::move(engine), engine_name == "ref" ? 1 : repeat};
+}
+
+Result<Table> measure(const SyntheticPair& input, int threads, const Options& options) {
+  Table table{input.pair.left.pixels.size(), threads, {}, {}};
+  std::vector<Ours> ours;
+  for (const char* engine : {"simd", "ref"}) {
+    if (options.engine != "both" && options.engine != engine) continue;
+    if (std::string(engine) == "ref" && threads > 1) continue;  // the definition runs on one thread
+    for (const char* preset : {"thesis", "default"}) {
+      DUO_TRY_ASSIGN(auto one, make_ours(engine, preset, input, threads, options.repeat));
+      ours.push_back(std::move(one));
+      table.ours.push_back({fmt::format("{} {}", engine, preset), {}, {}, {}});
+    }
+  }
+  std::vector<PeerMatcher> peers;
+  const auto run_ours = [&](std::size_t i) {
+    const Frame* frame = nullptr;
+    const Times whole = timed([&] {
+      ours[i].engine->submit(input.pair);
+      frame = &ours[i].engine->collect();
+    });
+    add_run(table.ours[i], *frame, whole);
+    if (peers.empty())
+      for (const Peer& peer : speed_peers()) peers.emplace_back(peer, frame->left, frame->right, kMaxDisparity);
+  };
+  for (std::size_t i = 0; i < ours.size(); ++i) run_ours(i);  // warm-up; the reference counts it, it has no caches to warm
+  for (const Peer& peer : speed_peers()) table.peers.push_back({fmt::format("OpenCV {}", peer.name), {}, {}, {}});
+  for (std::size_t i = 0; i < ours.size(); ++i)
+    if (ours[i].repeat > 1) table.ours[i] = {table.ours[i].name, {}, {}, {}};
+  for (PeerMatcher& peer : peers) peer.run(threads);
+  for (int r = 0; r < options.repeat; ++r) {
+    for (std::size_t i = 0; i < ours.size(); ++i)
+      if (ours[i].repeat > 1 || table.ours[i].whole.empty()) run_ours(i);
+    for (std::size_t i = 0; i < peers.size(); ++i) table.peers[i].matching.push_back(timed([&] { peers[i].run(threads); }));
+  }
+  return table;
+}
+
+nlohmann::json to_json(Times t) { return {{"wall_ms", t.wall_ms}, {"cpu_ms", t.cpu_ms}}; }
+
+nlohmann::json to_json(const Table& table) {
+  nlohmann::json out = {{"width", table.size.width},
+                        {"height", table.size.height},
+                        {"threads", table.threads},
+                        {"ours", nlohmann::json::array()},
+                        {"peers", nlohmann::json::array()}};
+  for (const Contestant& p : table.peers) out["peers"].push_back({{"name", p.name}, {"matching", to_json(median(p.matching))}});
+  for (const Contestant& c : table.ours) {
+    nlohmann::json stages = nlohmann::json::array(), ratios = nlohmann::json::object();
+    for (const auto& [name, runs] : c.stages) {
+      nlohmann::json stage = to_json(median(runs));
+      stage["stage"] = name;
+      stages.push_back(stage);
+    }
+    const Times whole = median(c.whole), matching = median(c.matching);
+    for (const Contestant& p : table.peers) {
+      const Times theirs = median(p.matching);
+      ratios[p.name] = {{"whole_wall", whole.wall_ms / theirs.wall_ms},
+                        {"whole_cpu", whole.cpu_ms / theirs.cpu_ms},
+                        {"matching_wall", matching.wall_ms / theirs.wall_ms},
+                        {"matching_cpu", matching.cpu_ms / theirs.cpu_ms}};
+    }
+    out["ours"].push_back({{"name", c.name},
+                           {"whole", to_json(whole)},
+                           {"matching", to_json(matching)},
+                           {"stages", stages},
+                           {"frames_per_s", 1000 / whole.wall_ms},
+                           {"ratio_to", ratios}});
+  }
+  return out;
+}
+
+void print(const Table& table) {
+  fmt::print("\n{}x{}, {} disparities, {} thread{}\n", table.size.width, table.size.height, kMaxDisparity, table.threads,
+             table.threads == 1 ? "" : "s");
+  fmt::print("{:<18} {:>9} {:>9} {:>9}   {}\n", "", "wall ms", "CPU ms", "frames/s", "stages, CPU ms");
+  for (const Contestant& c : table.ours) {
+    const Times whole = median(c.whole);
+    std::string stages;
+    for (const auto& [name, runs] : c.stages) stages += fmt::format("{} {:.1f}  ", name, median(runs).cpu_ms);
+    fmt::print("{:<18} {:9.1f} {:9.1f} {:9.1f}   {}\n", c.name, whole.wall_ms, whole.cpu_ms, 1000 / whole.wall_ms, stages);
+  }
+  for (const Contestant& p : table.peers)
+    fmt::print("{:<18} {:9.1f} {:9.1f}             matching call alone\n", p.name, median(p.matching).wall_ms,
+               median(p.matching).cpu_ms);
+  for (const Contestant& c : table.ours)
+    for (const Contestant& p : table.peers) {
+      const Times whole = median(c.whole), matching = median(c.matching), theirs = median(p.matching);
+      fmt::print("ratio {} / {}: whole frame wall {:.2f}, CPU {:.2f}; matching alone wall {:.2f}, CPU {:.2f}\n", c.name, p.name,
+                 whole.wall_ms / theirs.wall_ms, whole.cpu_ms / theirs.cpu_ms, matching.wall_ms / theirs.wall_ms,
+                 matching.cpu_ms / theirs.cpu_ms);
+    }
+}
+
+Result<Exit> run(const Options& options) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const Size size : {Size{640, 480}, Size{1280, 720}}) {
+    if (options.size != "both" && options.size != fmt::format("{}x{}", size.width, size.height)) continue;
+    const SyntheticPair input = render_synthetic({.size = size}, 2);
+    for (const int threads : {1, 2}) {
+      DUO_TRY_ASSIGN(const Table table, measure(input, threads, options));
+      if (options.json)
+        out.push_back(to_json(table));
+      else
+        print(table);
+      std::fflush(stdout);
+    }
+  }
+  if (options.json) fmt::print("{}\n", out.dump(2));
+  return Exit::kOk;
+}
+
+}  // namespace
+
+Command add_bench(CLI::App& app) {
+  CLI::App* sub = app.add_subcommand("bench", "Speed of each stage and of whole frames, beside OpenCV");
+  const auto options = std::make_shared<Options>();
+  sub->add_option("--engine", options->engine, "Which of our engines")
+      ->check(CLI::IsMember({"both", "ref", "simd"}))
+      ->capture_default_str();
+  sub->add_option("--size", options->size, "Size of the pictures")
+      ->check(CLI::IsMember({"both", "640x480", "1280x720"}))
+      ->capture_default_str();
+  sub->add_option("--repeat", options->repeat, "Runs of each contestant; the reference runs once")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  sub->add_flag("--json", options->json, "Print it as JSON");
+  sub->footer(kFooter);
+  return {sub, [options] { return run(*options); }};
+}
+
+}  // namespace duo::app

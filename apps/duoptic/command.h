@@ -1,0 +1,60 @@
+// What the subcommands share: how each one is declared, how it ends, and the options of the engine.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "duoptic/engine.h"
+#include "duoptic/result.h"
+
+namespace duo::app {
+
+/// Exit codes; stable, and below the 124 and more that shells and timeout(1) use.
+enum class Exit : int {
+  kOk = 0,
+  kUnexpected = 1,  // our fault, or the machine's: out of memory, no such instruction, …
+  kUsage = 2,       // unknown or impossible option
+  kCut = 3,         // the input was cut short; the results of its whole frames are there
+  kInput = 4,       // an input cannot be used
+  kOutput = 5,      // an output could not be written whole
+};
+
+Exit exit_of(const Error& error);
+
+struct Command {
+  CLI::App* app;
+  std::function<Result<Exit>()> run;
+};
+
+Command add_depth(CLI::App& app);
+Command add_eval(CLI::App& app);
+Command add_bench(CLI::App& app);
+Command add_demo(CLI::App& app);
+Command add_version(CLI::App& app);
+
+/// The options that say which engine runs with which matcher.
+struct EngineOptions {
+  std::string engine = "auto";
+  int threads;  // all that the machine has
+  std::string matcher = "pyramid", preset = "default";
+  std::vector<std::string> set;  // NAME=VALUE
+  std::string denoise = "auto";
+  bool fill = false;
+
+  EngineOptions();
+  /// Declares them; names and values are checked while the command line is read.
+  void add_to(CLI::App& app);
+  /// The setup without size, rig and wants.
+  Setup setup() const;
+
+ private:
+  void check() const;
+};
+
+/// Prints a warning or a note of progress as one line on stderr.
+void say(const CLI::App& app, const std::string& line);
+
+}  // namespace duo::app

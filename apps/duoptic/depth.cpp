@@ -1,0 +1,168 @@
+// duoptic depth: pictures or videos in, disparity, depth and points out.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "duoptic/source.h"
+#include "frame_files.h"
+#include "timing.h"
+
+namespace duo::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr char kFooter[] =
+    "Writes into DIR: disparity.pfm (float px, +inf where unknown) and disparity.png (colours with a legend); with --rig also\n"
+    "depth.png (16 bits, mm, 0 = unknown) and cloud.ply (coloured points, m). Videos give one folder for each frame:\n"
+    "DIR/frame_000000/disparity.pfm, ... The files of a frame appear together or not at all.\n\n"
+    "Examples:\n"
+    "  duoptic depth left.png right.png --max-disparity 64 -o out          a rectified pair\n"
+    "  duoptic depth left.avi right.avi --rig rig.json --every 10 -o out   raw webcam videos, every tenth frame\n"
+    "  duoptic depth both.png --preset thesis                              both views side by side in one file";
+
+struct Options {
+  std::string left, right, rig, folder = "duoptic_out";
+  int max_disparity = 128;
+  std::int64_t every = 1;
+  bool json = false, quiet = false;
+  EngineOptions engine;
+};
+
+/// Tells how far it is: over and over on a terminal, every few seconds elsewhere.
+class Progress {
+ public:
+  Progress(const CLI::App& app, std::int64_t count, bool quiet) : app_(app), count_(count), quiet_(quiet) {}
+  ~Progress() {
+    if (shown_ && terminal_) fmt::print(stderr, "\r\033[K");
+  }
+  void frame(std::int64_t number) {
+    const auto now = Clock::now();
+    if (quiet_ || now - last_ < (terminal_ ? std::chrono::milliseconds(200) : std::chrono::seconds(5))) return;
+    last_ = now;
+    shown_ = true;
+    const std::string line = count_ > 0 ? fmt::format("frame {} of {}", number, count_) : fmt::format("frame {}", number);
+    if (terminal_)
+      fmt::print(stderr, "\rduoptic {}: {}", app_.get_name(), line);
+    else
+      say(app_, line);
+  }
+
+ private:
+  const CLI::App& app_;
+  std::int64_t count_;
+  bool quiet_, terminal_ = isatty(STDERR_FILENO) != 0, shown_ = false;
+  Clock::time_point last_ = Clock::now();
+};
+
+struct Summary {
+  std::vector<double> ms;
+  std::vector<std::string> files;
+  double coverage_sum = 0;
+  std::int64_t read = 0;
+  Next end = Next::kEnd;
+  std::string warning;
+};
+
+Result<Summary> process(PairSource& pairs, Engine& engine, const Options& options, const CLI::App& app) {
+  Summary summary;
+  Progress progress(app, pairs.count(), options.quiet);
+  for (Pair pair;; ++summary.read) {
+    DUO_TRY_ASSIGN(summary.end, pairs.next(pair));
+    if (summary.end != Next::kPicture) break;
+    if (summary.read % options.every != 0) continue;
+    const Frame* frame = nullptr;
+    const Times times = timed([&] {
+      engine.submit(pair);
+      frame = &engine.collect();
+    });
+    summary.ms.push_back(times.wall_ms);
+    summary.coverage_sum += coverage(*frame);
+
+    const fs::path folder =
+        pairs.still() ? fs::path(options.folder) : fs::path(options.folder) / fmt::format("frame_{:06}", summary.read);
+    DUO_TRY_ASSIGN(OutputSet out, OutputSet::open(folder));
+    DUO_TRY(write_frame(*frame, engine.rectified(), out));
+    DUO_TRY(out.publish());
+    for (std::string& path : out.paths()) summary.files.push_back(std::move(path));
+    progress.frame(summary.read + 1);
+  }
+  summary.warning = pairs.warning();
+  return summary;
+}
+
+void print(const Summary& summary, const Engine& engine, const Options& options, Size size) {
+  const double frames = static_cast<double>(summary.ms.size()), ms = median(summary.ms);
+  const double percent = frames > 0 ? 100 * summary.coverage_sum / frames : 0;
+  if (options.json) {
+    const nlohmann::json out = {{"frames", summary.ms.size()},
+                                {"pairs_read", summary.read},
+                                {"width", size.width},
+                                {"height", size.height},
+                                {"engine", engine.name()},
+                                {"threads", options.engine.threads},
+                                {"matcher", options.engine.matcher},
+                                {"preset", options.engine.preset},
+                                {"max_disparity_px", options.max_disparity},
+                                {"median_ms", ms},
+                                {"coverage_percent", percent},
+                                {"cut", summary.end == Next::kCut},
+                                {"warning", summary.warning},
+                                {"files", summary.files}};
+    fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else if (!options.quiet) {
+    fmt::print(
+        "{} frame{} of {}x{}, {:.1f} ms each ({}, {}, {} threads), {:.0f} % of the pixels have a disparity; written to {}\n",
+        summary.ms.size(), summary.ms.size() == 1 ? "" : "s", size.width, size.height, ms, engine.name(), options.engine.preset,
+        options.engine.threads, percent, options.folder);
+  }
+}
+
+Result<Exit> run(const Options& options, const CLI::App& app) {
+  DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right));
+  Setup setup = options.engine.setup();
+  setup.size = pairs->size();
+  setup.max_disparity = options.max_disparity;
+  if (!options.rig.empty()) {
+    DUO_TRY_ASSIGN(setup.rig, load_rig(options.rig));
+    setup.wants = {.color = true, .depth = true};
+  }
+  DUO_TRY_ASSIGN(const auto engine, make_engine(options.engine.engine, options.engine.threads));
+  DUO_TRY(engine->prepare(setup));
+  DUO_TRY_ASSIGN(const Summary summary, process(*pairs, *engine, options, app));
+  print(summary, *engine, options, setup.size);
+  if (!summary.warning.empty()) say(app, "warning: " + summary.warning);
+  return summary.end == Next::kCut ? Exit::kCut : Exit::kOk;
+}
+
+}  // namespace
+
+Command add_depth(CLI::App& app) {
+  CLI::App* sub = app.add_subcommand("depth", "Disparity, depth and points of pictures or videos");
+  const auto options = std::make_shared<Options>();
+  sub->add_option("LEFT", options->left, "Picture or video of the left camera, or of both side by side")->required();
+  sub->add_option("RIGHT", options->right, "Picture or video of the right camera");
+  sub->add_option("--rig", options->rig,
+                  "Calibration (our JSON, OpenCV's YAML or JSON); without it the pair is taken as rectified");
+  sub->add_option("--max-disparity", options->max_disparity, "Searches 0 .. N-1 px")
+      ->type_name("N")
+      ->check(CLI::Range(1, Engine::kMaxDisparity))
+      ->capture_default_str();
+  sub->add_option("-o,--output", options->folder, "Folder for the results")->type_name("DIR")->capture_default_str();
+  sub->add_option("--every", options->every, "Of a video, only every N-th frame")
+      ->type_name("N")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
+      ->capture_default_str();
+  options->engine.add_to(*sub);
+  sub->add_flag("--json", options->json, "Print the summary as JSON");
+  sub->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
+  sub->footer(kFooter);
+  return {sub, [options, sub] { return run(*options, *sub); }};
+}
+
+}  // namespace duo::app

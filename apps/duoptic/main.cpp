@@ -1,0 +1,89 @@
+// duoptic: the command-line tool. Each subcommand has its own file; here they meet the command line and their errors an exit.
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+
+namespace duo::app {
+
+Exit exit_of(const Error& error) {
+  switch (error.code) {
+    case ErrorCode::kWriteFailed:
+      return Exit::kOutput;
+    case ErrorCode::kDeviceLost:
+      return Exit::kUnexpected;
+    case ErrorCode::kBadInput:
+    case ErrorCode::kNotFound:
+    case ErrorCode::kUnsupported:
+      return Exit::kInput;
+  }
+  return Exit::kUnexpected;
+}
+
+void say(const CLI::App& app, const std::string& line) { fmt::print(stderr, "duoptic {}: {}\n", app.get_name(), line); }
+
+namespace {
+
+constexpr char kFooter[] =
+    "Exit codes: 0 done; 1 unexpected; 2 unknown or impossible option; 3 input cut short, the results of its whole\n"
+    "frames are written; 4 an input cannot be used; 5 an output could not be written.\n\n"
+    "Try it:  duoptic demo        a synthetic room, with its accuracy and speed on this machine";
+
+bool wants_json(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (std::strcmp(argv[i], "--json") == 0) return true;
+  return false;
+}
+
+/// One line on stderr, with --json also as JSON on stdout.
+int fail(const std::string& command, std::string what, Exit exit, bool json) {
+  for (char& c : what)
+    if (c == '\n') c = ' ';
+  fmt::print(stderr, "duoptic{}{}: {}\n", command.empty() ? "" : " ", command, what);
+  const nlohmann::json error = {{"error", {{"exit", static_cast<int>(exit)}, {"what", what}}}};
+  if (json) fmt::print("{}\n", error.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  return static_cast<int>(exit);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Two cameras in, dense depth out.", "duoptic");
+  app.require_subcommand(1);
+  app.footer(kFooter);
+  const std::vector<Command> commands = {add_depth(app), add_eval(app), add_bench(app), add_demo(app), add_version(app)};
+  const auto chosen = [&]() -> const Command* {
+    for (const Command& command : commands)
+      if (command.app->parsed()) return &command;
+    return nullptr;
+  };
+  const auto name = [&] { return chosen() != nullptr ? chosen()->app->get_name() : std::string(); };
+  const bool json = wants_json(argc, argv);
+  try {
+    app.parse(argc, argv);
+    const Result<Exit> exit = chosen()->run();
+    if (!exit) return fail(name(), exit.error().what, exit_of(exit.error()), json);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+      return fail(name(), "cannot write to stdout", Exit::kOutput, false);
+    return static_cast<int>(*exit);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    return fail(name(), fmt::format("{} (see duoptic {} --help)", error.what(), name()), Exit::kUsage, json);
+  } catch (const std::bad_alloc&) {
+    return fail(name(), "out of memory; smaller pictures or a smaller --max-disparity need less", Exit::kUnexpected, json);
+  } catch (const std::exception& error) {
+    return fail(name(), error.what(), Exit::kUnexpected, json);
+  }
+}
+
+}  // namespace
+}  // namespace duo::app
+
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a full quota then fails the write, which is reported like a full disk
+  return duo::app::run(argc, argv);
+}

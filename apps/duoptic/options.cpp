@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <thread>
+
+#include "command.h"
+
+namespace duo::app {
+namespace {
+
+const std::vector<std::pair<std::string, Denoise>> kDenoise = {{"auto", Denoise::kAuto},
+                                                               {"none", Denoise::kNone},
+                                                               {"median", Denoise::kMedian},
+                                                               {"gaussian", Denoise::kGaussian},
+                                                               {"both", Denoise::kBoth}};
+
+CLI::Validator known_engine() {
+  return {[](std::string& name) {
+            const auto engine = make_engine(name, 1);
+            return engine ? std::string() : engine.error().what;
+          },
+          "auto|ref|simd"};
+}
+
+std::pair<std::string, double> parse_parameter(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  double value = 0;
+  const char* begin = text.data() + std::min(equals, text.size() - 1) + 1;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(begin, end, value);
+  if (equals == std::string::npos || error != std::errc() || rest != end)
+    throw CLI::ValidationError("--set", fmt::format("'{}' is not NAME=VALUE with a number", text));
+  return {text.substr(0, equals), value};
+}
+
+}  // namespace
+
+EngineOptions::EngineOptions() : threads(std::max(1, static_cast<int>(std::thread::hardware_concurrency()))) {}
+
+void EngineOptions::add_to(CLI::App& app) {
+  std::vector<std::string> denoise_names;
+  for (const auto& [name, value] : kDenoise) denoise_names.push_back(name);
+  app.add_option("--engine", engine, "auto: the best of this machine; ref: the plain definition; simd: fast, same bits")
+      ->check(known_engine())
+      ->capture_default_str();
+  app.add_option("--threads", threads, "Threads; the result does not depend on them")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app.add_option("--matcher", matcher, "Stereo method")->check(CLI::IsMember(matcher_names()))->capture_default_str();
+  app.add_option("--preset", preset, "The matcher's set of parameters: thesis or default")->capture_default_str();
+  app.add_option("--set", set, "Overrides one parameter of the preset; may be repeated")->type_name("NAME=VALUE");
+  app.add_option("--denoise", denoise, "Before rectification; auto: median for raw pictures, none for rectified ones")
+      ->check(CLI::IsMember(denoise_names))
+      ->capture_default_str();
+  app.add_flag("--fill", fill, "Fill holes from the background");
+  app.parse_complete_callback([this] { check(); });
+}
+
+void EngineOptions::check() const {
+  const auto infos = matcher_parameters(matcher, preset);
+  if (!infos) throw CLI::ValidationError("--preset", infos.error().what);
+  for (const std::string& text : set) {
+    const auto [name, value] = parse_parameter(text);
+    const auto info = std::find_if(infos->begin(), infos->end(), [&n = name](const ParameterInfo& i) { return i.name == n; });
+    if (info == infos->end()) {
+      std::string known;
+      for (const ParameterInfo& i : *infos) known += (known.empty() ? "" : ", ") + i.name;
+      throw CLI::ValidationError("--set", fmt::format("no parameter '{}'; there are: {}", name, known));
+    }
+    if (!(value >= info->min && value <= info->max))
+      throw CLI::ValidationError("--set", fmt::format("{} must be in {} .. {} {}", name, info->min, info->max, info->unit));
+  }
+}
+
+Setup EngineOptions::setup() const {
+  Setup setup;
+  setup.matcher = matcher;
+  setup.preset = preset;
+  for (const std::string& text : set) setup.parameters.push_back(parse_parameter(text));
+  setup.fill = fill;
+  for (const auto& [name, value] : kDenoise)
+    if (name == denoise) setup.denoise = value;
+  return setup;
+}
+
+}  // namespace duo::app

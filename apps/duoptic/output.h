@@ -1,0 +1,39 @@
+// The files of one frame: they appear under their names together, or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "duoptic/result.h"
+
+namespace duo::app {
+
+/// Files are written into a hidden folder inside `folder` and take their names in publish(); what was not published is removed
+/// at the end, with the folders that were made for it.
+class OutputSet {
+ public:
+  /// Errors  the folder cannot be made or written to
+  static Result<OutputSet> open(const std::filesystem::path& folder);
+  OutputSet(OutputSet&&) noexcept;
+  OutputSet& operator=(OutputSet&&) = delete;
+  ~OutputSet();
+
+  /// Where to write the file that will be called `name`.
+  std::filesystem::path operator/(const std::string& name);
+
+  /// Gives all files their names; files of earlier runs are replaced.
+  ///
+  /// Errors  a name is taken by a folder, or the like; then none of the names is left behind
+  Result<void> publish();
+
+  std::vector<std::string> paths() const;
+
+ private:
+  OutputSet() = default;
+  std::filesystem::path folder_, staging_;
+  std::vector<std::filesystem::path> made_;  // folders that were not there before, outermost first
+  std::vector<std::string> names_;
+};
+
+}  // namespace duo::app

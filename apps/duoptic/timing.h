@@ -1,0 +1,44 @@
+// Wall and CPU time of a call, and medians of them.
+#pragma once
+
+#include <algorithm>
+#include <ctime>
+#include <vector>
+
+namespace duo::app {
+
+struct Times {
+  double wall_ms = 0, cpu_ms = 0;  // CPU: of all threads of the process
+};
+
+inline double clock_ms(clockid_t id) {
+  timespec t{};
+  clock_gettime(id, &t);
+  return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) / 1e6;
+}
+
+template <class F>
+Times timed(F&& call) {
+  const double wall = clock_ms(CLOCK_MONOTONIC), cpu = clock_ms(CLOCK_PROCESS_CPUTIME_ID);
+  call();
+  return {clock_ms(CLOCK_MONOTONIC) - wall, clock_ms(CLOCK_PROCESS_CPUTIME_ID) - cpu};
+}
+
+/// The median; 0 of nothing.
+inline double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+inline Times median(const std::vector<Times>& runs) {
+  std::vector<double> wall, cpu;
+  for (const Times& t : runs) {
+    wall.push_back(t.wall_ms);
+    cpu.push_back(t.cpu_ms);
+  }
+  return {median(wall), median(cpu)};
+}
+
+}  // namespace duo::app
