@@ -63,7 +63,7 @@ Result<Run> run_on(const SyntheticPair& input, bool with_rig, const EngineOption
 Result<void> write_pictures(const SyntheticPair& raw, const Run& run, const std::string& folder) {
   const Rectified& rectified = *run.engine->rectified();
   const Image<Rgb8> disparity = draw_disparity(run.frame->disparity.d_q4, &rectified);
-  const Image<Rgb8> cloud = draw_cloud(run.frame->disparity.d_q4, run.frame->color, rectified, raw.pair.left.pixels.size());
+  const Image<Rgb8> cloud = draw_cloud(run.frame->disparity.d_q4, run.frame->color, rectified, disparity.size());
   DUO_TRY_ASSIGN(OutputSet out, OutputSet::open(folder));
   DUO_TRY(write_frame(*run.frame, run.engine->rectified(), out));
   DUO_TRY(write_png(raw.pair.left.pixels, out / "left.png"));

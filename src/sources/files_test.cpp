@@ -2,125 +2,17 @@
 // video gives exactly its first whole pictures and says that it was cut, or is an error when none is left.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <functional>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include "duoptic/source.h"
-#include "sources/libav.h"
-
-extern "C" {
-#include <libavutil/imgutils.h>
-#include <libavutil/opt.h>
-}
+#include "tests/write_media.h"
 
 namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kFrames = 12;
-constexpr Size kSize{64, 48};
-
-class TempFolder {
- public:
-  TempFolder() {
-    std::string name = (fs::temp_directory_path() / "duoptic_files_XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~TempFolder() { fs::remove_all(path_); }
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  fs::path path_;
-};
-
-std::string bytes_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-void put(const fs::path& path, std::string_view bytes) { std::ofstream(path, std::ios::binary) << bytes; }
-
-/// A moving pattern with something in every byte of every plane.
-av::DecodedFrame pattern(AVPixelFormat format, int t) {
-  av::DecodedFrame frame(av_frame_alloc());
-  frame->format = format;
-  frame->width = kSize.width;
-  frame->height = kSize.height;
-  frame->pts = t;
-  EXPECT_GE(av_frame_get_buffer(frame.get(), 0), 0);
-  for (int plane = 0; plane < 4 && frame->data[plane] != nullptr; ++plane) {
-    const bool halved = plane > 0 && (format == AV_PIX_FMT_YUVJ420P || format == AV_PIX_FMT_YUV420P);
-    const int height = halved ? kSize.height / 2 : kSize.height;
-    const int width = av_image_get_linesize(format, kSize.width, plane);
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x)
-        frame->data[plane][y * frame->linesize[plane] + x] = static_cast<std::uint8_t>(x * 5 + y * 3 + t * 7 + ((x * y) & 31));
-  }
-  return frame;
-}
-
-struct Encoder {
-  av::Decoder context;  // the owner fits encoders too
-  void encode(const AVFrame* frame, const std::function<void(AVPacket&)>& write) {
-    ASSERT_GE(avcodec_send_frame(context.get(), frame), 0);
-    const av::Packet packet(av_packet_alloc());
-    while (avcodec_receive_packet(context.get(), packet.get()) >= 0) {
-      write(*packet);
-      av_packet_unref(packet.get());
-    }
-  }
-};
-
-Encoder make_encoder(AVCodecID id, AVPixelFormat format, int b_frames = 0, bool global_header = false) {
-  const AVCodec* codec = avcodec_find_encoder(id);
-  Encoder encoder{av::Decoder(avcodec_alloc_context3(codec))};
-  AVCodecContext& c = *encoder.context;
-  c.width = kSize.width;
-  c.height = kSize.height;
-  c.pix_fmt = format;
-  c.color_range = format == AV_PIX_FMT_YUVJ420P ? AVCOL_RANGE_JPEG : AVCOL_RANGE_UNSPECIFIED;
-  c.time_base = {1, 30};
-  c.framerate = {30, 1};
-  c.max_b_frames = b_frames;
-  c.bit_rate = 400'000;
-  c.strict_std_compliance = FF_COMPLIANCE_UNOFFICIAL;
-  if (global_header) c.flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-  EXPECT_GE(avcodec_open2(&c, codec, nullptr), 0);
-  return encoder;
-}
-
-void write_picture(const fs::path& path, AVCodecID id, AVPixelFormat format) {
-  Encoder encoder = make_encoder(id, format);
-  const av::DecodedFrame frame = pattern(format, 0);
-  encoder.encode(frame.get(), [&](AVPacket& p) {
-    put(path, {reinterpret_cast<char*>(p.data), static_cast<std::size_t>(p.size)});
-  });
-}
-
-void write_video(const fs::path& path, AVCodecID id, AVPixelFormat format, int b_frames, const char* movflags = nullptr) {
-  AVFormatContext* muxer = nullptr;
-  ASSERT_GE(avformat_alloc_output_context2(&muxer, nullptr, nullptr, path.c_str()), 0);
-  Encoder encoder = make_encoder(id, format, b_frames, (muxer->oformat->flags & AVFMT_GLOBALHEADER) != 0);
-  AVStream* stream = avformat_new_stream(muxer, nullptr);
-  stream->time_base = {1, 30};
-  stream->avg_frame_rate = {30, 1};
-  avcodec_parameters_from_context(stream->codecpar, encoder.context.get());
-  if (movflags != nullptr) av_opt_set(muxer->priv_data, "movflags", movflags, 0);
-  ASSERT_GE(avio_open(&muxer->pb, path.c_str(), AVIO_FLAG_WRITE), 0);
-  ASSERT_GE(avformat_write_header(muxer, nullptr), 0);
-  const auto write = [&](AVPacket& packet) {
-    if (packet.duration == 0) packet.duration = 1;
-    av_packet_rescale_ts(&packet, {1, 30}, stream->time_base);
-    ASSERT_GE(av_interleaved_write_frame(muxer, &packet), 0);
-  };
-  for (int t = 0; t < kFrames; ++t) encoder.encode(pattern(format, t).get(), write);
-  encoder.encode(nullptr, write);
-  ASSERT_GE(av_write_trailer(muxer), 0);
-  avio_closep(&muxer->pb);
-  avformat_free_context(muxer);
-}
+using namespace test;  // NOLINT: the writers of tests/write_media.h
 
 struct Read {
   bool opened = false;

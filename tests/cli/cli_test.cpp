@@ -1,0 +1,236 @@
+// The tool as its users meet it: good runs leave the files they promise; bad input gives one clear line, the promised exit
+// code, and nothing under the final names.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "duoptic/rig.h"
+#include "duoptic/sink.h"
+#include "duoptic/source.h"
+#include "duoptic/synthetic.h"
+#include "tests/write_media.h"
+
+namespace duo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::put;
+
+constexpr int kUsage = 2, kCut = 3, kInput = 4, kOutput = 5;
+
+struct Ended {
+  int exit = -1;
+  std::string out, err;
+};
+
+/// A small synthetic pair with its rig, and the tool run beside it.
+class Cli : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const SyntheticSetup setup{.size = {160, 120}};
+    const SyntheticPair raw = render_synthetic(setup, 2);
+    ASSERT_TRUE(write_png(raw.pair.left.pixels, at("left.png")));
+    ASSERT_TRUE(write_png(raw.pair.right.pixels, at("right.png")));
+    ASSERT_TRUE(save_rig(raw.rig, at("rig.json")));
+  }
+
+  fs::path at(const std::string& name) const { return folder_ / name; }
+
+  /// Runs the tool in the folder of its inputs; `before` is shell, for limits.
+  Ended run(const std::string& arguments, const std::string& before = "") const {
+    const std::string command =
+        "cd '" + at("").string() + "' && " + before + " '" DUO_TOOL "' " + arguments + " >stdout.txt 2>stderr.txt";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), bytes_of(at("stdout.txt")),
+            bytes_of(at("stderr.txt"))};
+  }
+
+  /// Every bad call: one line, its exit code, its words, no output.
+  void expect_failure(const std::string& arguments, int exit, const std::string& words, const std::string& before = "") const {
+    SCOPED_TRACE(arguments);
+    const Ended ended = run(arguments, before);
+    EXPECT_EQ(ended.exit, exit) << ended.err;
+    EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+    EXPECT_EQ(ended.err.rfind("duoptic", 0), 0u) << ended.err;
+    EXPECT_NE(ended.err.find(words), std::string::npos) << ended.err;
+    EXPECT_EQ(ended.out, "");
+    EXPECT_FALSE(fs::exists(at("out")));
+  }
+
+  void write_rig(const std::string& name, const std::function<void(Rig&)>& spoil) const {
+    Rig rig = synthetic_rig({.size = {160, 120}});
+    spoil(rig);
+    ASSERT_TRUE(save_rig(rig, at(name)));
+  }
+
+ private:
+  test::TempFolder folder_;
+};
+
+TEST_F(Cli, RectifiedPairLeavesDisparity) {
+  const Ended ended = run("depth left.png right.png --max-disparity 32 -o out");
+  ASSERT_EQ(ended.exit, 0) << ended.err;
+  EXPECT_EQ(ended.err, "");
+  const auto pfm = read_pfm(at("out/disparity.pfm"));
+  ASSERT_TRUE(pfm);
+  EXPECT_EQ(pfm->size(), (Size{160, 120}));
+  EXPECT_TRUE(open_source(at("out/disparity.png")));
+  EXPECT_FALSE(fs::exists(at("out/depth.png")));  // metres need a rig
+  EXPECT_EQ(std::distance(fs::directory_iterator(at("out")), fs::directory_iterator()), 2);
+}
+
+TEST_F(Cli, RawPairWithRigLeavesDepthAndPoints) {
+  const Ended ended = run("depth left.png right.png --rig rig.json --max-disparity 32 -o out/deep --json --threads 2");
+  ASSERT_EQ(ended.exit, 0) << ended.err;
+  const auto json = nlohmann::json::parse(ended.out, nullptr, false);
+  ASSERT_TRUE(json.is_object()) << ended.out;
+  EXPECT_EQ(json["frames"], 1);
+  EXPECT_EQ(json["files"].size(), 4u);
+  EXPECT_GT(json["coverage_percent"], 30.0);
+  for (const char* name : {"disparity.pfm", "disparity.png", "depth.png", "cloud.ply"})
+    EXPECT_GT(fs::file_size(at("out/deep") / name), 500u) << name;
+  EXPECT_EQ(bytes_of(at("out/deep/cloud.ply")).rfind("ply\n", 0), 0u);
+}
+
+TEST_F(Cli, EnginesAndThreadsAgreeToTheByte) {
+  ASSERT_EQ(run("depth left.png right.png --rig rig.json --max-disparity 24 -o ref --engine ref").exit, 0);
+  for (const char* threads : {"1", "2", "3"}) {
+    ASSERT_EQ(run(std::string("depth left.png right.png --rig rig.json --max-disparity 24 -o simd --engine simd --threads ") +
+                  threads)
+                  .exit,
+              0);
+    EXPECT_EQ(bytes_of(at("ref/disparity.pfm")), bytes_of(at("simd/disparity.pfm")));
+    EXPECT_EQ(bytes_of(at("ref/depth.png")), bytes_of(at("simd/depth.png")));
+  }
+}
+
+TEST_F(Cli, VideosGiveAFolderAFrame) {
+  test::write_video(at("v.avi"), AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P, 0);
+  const Ended ended = run("depth v.avi v.avi --max-disparity 16 --every 5 -o out --quiet");
+  ASSERT_EQ(ended.exit, 0) << ended.err;
+  EXPECT_EQ(ended.out + ended.err, "");
+  for (const char* frame : {"frame_000000", "frame_000005", "frame_000010"})
+    EXPECT_TRUE(fs::exists(at("out") / frame / "disparity.pfm"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(at("out")), fs::directory_iterator()), 3);
+}
+
+TEST_F(Cli, CutVideoGivesItsWholeFrames) {
+  test::write_video(at("v.avi"), AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P, 0);
+  const std::string whole = bytes_of(at("v.avi"));
+  put(at("cut.avi"), std::string_view(whole).substr(0, whole.size() / 2));
+  const Ended ended = run("depth cut.avi --max-disparity 16 -o out");  // both views side by side in one file
+  EXPECT_EQ(ended.exit, kCut);
+  EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+  EXPECT_NE(ended.err.find("cut.avi is cut short"), std::string::npos) << ended.err;
+  const auto frames = std::distance(fs::directory_iterator(at("out")), fs::directory_iterator());
+  EXPECT_GT(frames, 0);
+  EXPECT_LT(frames, test::kFrames);
+}
+
+TEST_F(Cli, BadPictures) {
+  put(at("empty.png"), "");
+  put(at("text.png"), "these are only words, and no picture at all");
+  put(at("cut.png"), std::string_view(bytes_of(at("left.png"))).substr(0, 5000));
+  ASSERT_TRUE(write_png(Image<Rgb8>({80, 60}), at("small.png")));
+  ASSERT_TRUE(write_png(Image<Rgb8>({81, 60}), at("odd.png")));
+  test::write_video(at("v.avi"), AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P, 0);
+  put(at("start.avi"), std::string_view(bytes_of(at("v.avi"))).substr(0, 300));
+  expect_failure("depth missing.png right.png -o out", kInput, "missing.png: no such file");
+  expect_failure("depth left.png empty.png -o out", kInput, "empty.png: the file is empty");
+  expect_failure("depth text.png right.png -o out", kInput, "text.png: it is no picture or video");
+  expect_failure("depth left.png cut.png -o out", kInput, "cut.png: it is cut short");
+  expect_failure("depth left.png small.png -o out", kInput, "sizes differ, 160x120 and 80x60");
+  expect_failure("depth odd.png -o out", kInput, "even width");
+  expect_failure("depth left.png v.avi -o out", kInput, "one is a picture, the other a video");
+  expect_failure("depth start.avi v.avi -o out", kInput, "start.avi");
+  expect_failure("depth . right.png -o out", kInput, "not a file");
+}
+
+TEST_F(Cli, BadOptions) {
+  const std::string pair = "depth left.png right.png -o out ";
+  for (const char* n : {"0", "-3", "2049", "99999999999999999999", "many"})
+    expect_failure(pair + "--max-disparity " + n, kUsage, "--max-disparity");
+  expect_failure(pair + "--matcher magic", kUsage, "magic");
+  expect_failure(pair + "--engine warp", kUsage, "warp");
+  expect_failure(pair + "--preset best", kUsage, "best");
+  expect_failure(pair + "--set levels", kUsage, "NAME=VALUE");
+  expect_failure(pair + "--set nothing=1", kUsage, "nothing");
+  expect_failure(pair + "--set levels=nan", kUsage, "levels");
+  expect_failure(pair + "--threads 0", kUsage, "--threads");
+  expect_failure(pair + "--every 0", kUsage, "--every");
+  expect_failure(pair + "--what", kUsage, "--what");
+  expect_failure("depth -o out", kUsage, "LEFT");
+  expect_failure("", kUsage, "subcommand");
+  expect_failure("eval middlebury nowhere", kInput, "nowhere");
+}
+
+TEST_F(Cli, BadRigs) {
+  const std::string pair = "depth left.png right.png -o out --rig ";
+  write_rig("other.json", [](Rig& rig) { rig = synthetic_rig({.size = {320, 240}}); });
+  const std::string rig = bytes_of(at("rig.json"));
+  put(at("cut.json"), std::string_view(rig).substr(0, rig.size() / 2));
+  put(at("empty.json"), "");
+  put(at("list.json"), "[1, 2, 3]\n");
+  const auto with = [&](const char* name, const std::function<void(nlohmann::json&)>& spoil) {
+    nlohmann::json json = nlohmann::json::parse(rig);
+    spoil(json);
+    put(at(name), json.dump());
+  };
+  // Whatever the layout: the first matrix of three rows or nine numbers below right_from_left is its rotation.
+  const std::function<bool(nlohmann::json&, const nlohmann::json&)> replace_first_number = [&](nlohmann::json& j,
+                                                                                               const nlohmann::json& value) {
+    for (auto& item : j) {
+      if (item.is_number()) return item = value, true;
+      if (item.is_structured() && replace_first_number(item, value)) return true;
+    }
+    return false;
+  };
+  with("skewed.json", [&](nlohmann::json& j) { ASSERT_TRUE(replace_first_number(j["right_from_left"]["rotation"], 0.5)); });
+  with("nan.json", [&](nlohmann::json& j) { ASSERT_TRUE(replace_first_number(j["right_from_left"]["rotation"], nullptr)); });
+  for (const char* name : {"missing.json", "other.json", "cut.json", "empty.json", "list.json", "skewed.json", "nan.json"})
+    expect_failure(pair + name, kInput, std::string(name) == "other.json" ? "320x240" : name);
+  put(at("nan.yml"), "%YAML:1.0\nM1: [.nan, 0, 1, 0, 1, 1, 0, 0, 1]\n");
+  expect_failure(pair + "nan.yml", kInput, "nan.yml");
+}
+
+TEST_F(Cli, BadOutputs) {
+  put(at("file"), "in the way");
+  expect_failure("depth left.png right.png --max-disparity 16 -o file", kOutput, "file");
+  expect_failure("depth left.png right.png --max-disparity 16 -o file/deeper", kOutput, "file");
+  expect_failure("depth left.png right.png --max-disparity 16 -o /proc/duoptic", kOutput, "/proc/duoptic");
+  // A quota of 16 blocks of 512 bytes: the first file does not fit.
+  expect_failure("depth left.png right.png --max-disparity 16 -o out", kOutput, "disparity.pfm", "ulimit -f 16;");
+  EXPECT_EQ(run("version >/dev/full; exit $?", "").exit, kOutput);
+}
+
+TEST_F(Cli, FilesAppearTogetherOrNotAtAll) {
+  fs::create_directories(at("taken/disparity.png"));  // a folder has the name of the second file
+  const Ended ended = run("depth left.png right.png --max-disparity 16 -o taken");
+  EXPECT_EQ(ended.exit, kOutput) << ended.err;
+  EXPECT_EQ(std::distance(fs::directory_iterator(at("taken")), fs::directory_iterator()), 1);
+}
+
+TEST_F(Cli, ErrorsInJsonToo) {
+  const Ended ended = run("depth missing.png right.png --json");
+  EXPECT_EQ(ended.exit, kInput);
+  const auto json = nlohmann::json::parse(ended.out, nullptr, false);
+  ASSERT_TRUE(json.is_object()) << ended.out;
+  EXPECT_EQ(json["error"]["exit"], kInput);
+  EXPECT_NE(json["error"]["what"].get<std::string>().find("missing.png"), std::string::npos);
+}
+
+TEST_F(Cli, HelpHasExamples) {
+  for (const char* sub : {"depth", "eval middlebury", "bench", "demo", "version"}) {
+    const Ended ended = run(std::string(sub) + " --help");
+    EXPECT_EQ(ended.exit, 0) << sub;
+    EXPECT_NE(ended.out.find("Example"), std::string::npos) << sub;
+  }
+}
+
+}  // namespace
+}  // namespace duo
