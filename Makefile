@@ -1,11 +1,9 @@
 # The few commands that everybody needs. Each first installs what is missing (tools/setup; does nothing when all is there).
-# build/release is the tool and the library; build/test adds the tests to the same; build/dev is the tests with sanitizers.
-CMAKE_ARGS = -G Ninja -DCMAKE_BUILD_TYPE=Release
-
+# build/release has the tool, and once `make test` was called the tests; build/sanitize the tests with ASan and UBSan.
 .PHONY: build demo test bench format setup-build setup-test
 
 build: setup-build
-	@cmake -S . -B build/release $(CMAKE_ARGS) -DDUO_TESTS=OFF >/dev/null
+	@test -f build/release/build.ninja || cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DDUO_TESTS=OFF >/dev/null
 	@cmake --build build/release --target duoptic_tool
 
 demo: build
@@ -17,7 +15,8 @@ test: setup-test
 bench: build
 	@build/release/duoptic bench
 
-format: setup-test
+format:
+	@tools/setup format
 	@git ls-files '*.h' '*.cpp' | xargs clang-format -i
 
 setup-build:

@@ -165,6 +165,7 @@ void print(const Table& table) {
                median(p.matching).cpu_ms);
   for (const Contestant& c : table.ours)
     for (const Contestant& p : table.peers) {
+      if (c.whole.size() == 1) continue;  // the reference is no competitor
       const Times whole = median(c.whole), matching = median(c.matching), theirs = median(p.matching);
       fmt::print("ratio {} / {}: whole frame wall {:.2f}, CPU {:.2f}; matching alone wall {:.2f}, CPU {:.2f}\n", c.name, p.name,
                  whole.wall_ms / theirs.wall_ms, whole.cpu_ms / theirs.cpu_ms, matching.wall_ms / theirs.wall_ms,
