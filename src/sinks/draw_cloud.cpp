@@ -13,9 +13,9 @@
 namespace duo {
 namespace {
 
-constexpr double kYaw_rad = -0.38, kPitch_rad = 0.22;  // the camera goes to the right and up
+constexpr double kYaw_rad = -0.20, kPitch_rad = 0.09;  // the camera goes to the right and up
 constexpr int kOversampling = 2;                       // drawn larger and averaged down: smooth edges
-constexpr double kMaxStep_px = 1.5;                    // neighbours further apart in disparity lie on different things
+constexpr double kMaxStep_px = 2.5;                    // neighbours further apart in disparity lie on different things
 
 struct Vertex {
   double u = 0, v = 0, z_m = 0;  // in the drawn picture; z_m = 0: none
