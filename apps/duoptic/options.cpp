@@ -50,7 +50,7 @@ void EngineOptions::add_to(CLI::App& app) {
   app.add_option("--matcher", matcher, "Stereo method")->check(CLI::IsMember(matcher_names()))->capture_default_str();
   app.add_option("--preset", preset, "The matcher's set of parameters: thesis or default")->capture_default_str();
   app.add_option("--set", set, "Overrides one parameter of the preset; may be repeated")->type_name("NAME=VALUE");
-  app.add_option("--denoise", denoise, "Before rectification; auto: median for raw pictures, none for rectified ones")
+  app.add_option("--denoise", denoise, "Before rectification; auto: gaussian for raw pictures, none for rectified ones")
       ->check(CLI::IsMember(denoise_names))
       ->capture_default_str();
   app.add_flag("--fill", fill, "Fill holes from the background");
