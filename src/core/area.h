@@ -1,0 +1,61 @@
+// Parts of a picture: what the tracker asks the observation stages to look at.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "duoptic/image.h"
+
+namespace duo {
+
+/// Columns [x, x + width) of rows [y, y + height). May reach over the picture's border; stages look at what lies inside.
+struct Window {
+  int x = 0, y = 0, width = 0, height = 0;
+  friend bool operator==(const Window&, const Window&) = default;
+
+  static Window all(Size size) { return {0, 0, size.width, size.height}; }
+  bool empty() const { return width <= 0 || height <= 0; }
+  int x_end() const { return x + width; }
+  int y_end() const { return y + height; }
+  bool contains(int py, int px) const { return px >= x && px < x_end() && py >= y && py < y_end(); }
+  Window within(Size size) const {
+    const int x0 = std::max(x, 0), y0 = std::max(y, 0);
+    return {x0, y0, std::max(std::min(x_end(), size.width) - x0, 0), std::max(std::min(y_end(), size.height) - y0, 0)};
+  }
+};
+
+/// Pixels whose centre lies at most `radius_px` from that of (x, y); the whole plane where radius_px < 0.
+///
+/// Units   |coordinates| and radius below 2^15 px, so that squares fit 32 bits
+struct Disc {
+  int x = 0, y = 0, radius_px = -1;
+  bool contains(int py, int px) const {
+    return radius_px < 0 || (px - x) * (px - x) + (py - y) * (py - y) <= radius_px * radius_px;
+  }
+};
+
+/// The pixels inside a window, inside a disc, and marked with any of `bits`.
+///
+/// Shape   marks: of the picture, or empty = all are marked
+struct Area {
+  Window window;
+  Disc disc = {};
+  View<const std::uint8_t> marks = {};
+  std::uint8_t bits = 0xFF;
+
+  bool marked(int y, int x) const { return marks.empty() || (marks.at(y, x) & bits) != 0; }
+  bool contains(int y, int x) const { return window.contains(y, x) && disc.contains(y, x) && marked(y, x); }
+
+  /// The smallest window that holds all of it in a picture of this size.
+  Window bounds(Size size) const {
+    const Window inside = window.within(size);
+    if (disc.radius_px < 0) return inside;
+    const int side = 2 * disc.radius_px + 1;
+    const Window around{disc.x - disc.radius_px, disc.y - disc.radius_px, side, side};
+    const int x0 = std::max(inside.x, around.x), y0 = std::max(inside.y, around.y);
+    return {x0, y0, std::max(std::min(inside.x_end(), around.x_end()) - x0, 0),
+            std::max(std::min(inside.y_end(), around.y_end()) - y0, 0)};
+  }
+};
+
+}  // namespace duo
