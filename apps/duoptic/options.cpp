@@ -34,6 +34,16 @@ std::pair<std::string, double> parse_parameter(const std::string& text) {
   return {text.substr(0, equals), value};
 }
 
+/// Every parameter of every matcher, a line each, from the matchers' own tables.
+std::string parameter_help() {
+  std::string text = "Overrides one parameter of the preset; may be repeated:";
+  for (const std::string& matcher : matcher_names())
+    if (const auto parameters = matcher_parameters(matcher, "default"))
+      for (const ParameterInfo& p : *parameters)
+        text += fmt::format("\n  {} {}..{}{}{}: {} [{}]", p.name, p.min, p.max, p.unit.empty() ? "" : " ", p.unit, p.help, p.value);
+  return text;
+}
+
 }  // namespace
 
 EngineOptions::EngineOptions() : threads(std::max(1, static_cast<int>(std::thread::hardware_concurrency()))) {}
@@ -49,7 +59,7 @@ void EngineOptions::add_to(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--matcher", matcher, "Stereo method")->check(CLI::IsMember(matcher_names()))->capture_default_str();
   app.add_option("--preset", preset, "The matcher's set of parameters: thesis or default")->capture_default_str();
-  app.add_option("--set", set, "Overrides one parameter of the preset; may be repeated")->type_name("NAME=VALUE");
+  app.add_option("--set", set, parameter_help())->type_name("NAME=VALUE");
   app.add_option("--denoise", denoise, "Before rectification; auto: gaussian for raw pictures, none for rectified ones")
       ->check(CLI::IsMember(denoise_names))
       ->capture_default_str();
