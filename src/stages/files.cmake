@@ -20,6 +20,4 @@ target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/stages/match_tiles/chan
 duoptic_stage(hsv)
 duoptic_stage(erode)
 
-duoptic_stage(sift)
-target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/stages/sift/sift.cpp ${PROJECT_SOURCE_DIR}/src/stages/sift/place.cpp
-  ${PROJECT_SOURCE_DIR}/src/stages/sift/histograms_simd.cpp)
+duoptic_stage(mark_targets)
