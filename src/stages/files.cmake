@@ -21,3 +21,4 @@ duoptic_stage(hsv)
 duoptic_stage(erode)
 
 duoptic_stage(mark_targets)
+duoptic_stage(region)

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/pool.h"
+#include "core/run_forest.h"
 #include "duoptic/frame.h"
 
 namespace duo {
@@ -15,22 +16,12 @@ namespace duo {
 // Units    1/16 px
 // Threads  simd: bands in parallel, joined at their borders; the result does not depend on the bands
 // Exact    ref and simd agree bit for bit
-// Source   connected components by union-find; Tarjan, "Efficiency of a good but not linear set union algorithm", 1975
+// Source   connected components by union-find (core/run_forest.h)
 namespace ref {
 void remove_speckle(View<std::uint16_t> d_q4, int step_q4, int smallest);
 }
 namespace simd {
-/// Runs of each row and the forest over them.
-struct SpeckleScratch {
-  struct Run {
-    std::int32_t parent, pixels;  // index of the run above it in the forest; pixels of the whole island at the root
-    std::uint16_t begin, end;     // columns [begin, end)
-  };
-  Image<Run> runs;             // row y holds its runs; a row of W pixels has at most W
-  Image<std::int32_t> counts;  // 1 x H: how many
-  SpeckleScratch() = default;
-  explicit SpeckleScratch(Size size) : runs(size), counts({size.height, 1}) {}
-};
+using SpeckleScratch = RunForestScratch;
 void remove_speckle(Pool& pool, View<std::uint16_t> d_q4, int step_q4, int smallest, SpeckleScratch& scratch);
 }  // namespace simd
 
