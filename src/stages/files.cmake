@@ -19,6 +19,9 @@ duoptic_stage(match_tiles)
 target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/stages/match_tiles/channels_simd.cpp)
 duoptic_stage(hsv)
 duoptic_stage(erode)
-
+duoptic_stage(sift)
+target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/stages/sift/sift.cpp ${PROJECT_SOURCE_DIR}/src/stages/sift/place.cpp
+  ${PROJECT_SOURCE_DIR}/src/stages/sift/histograms_simd.cpp)
 duoptic_stage(mark_targets)
 duoptic_stage(region)
+duoptic_stage(match_points)
