@@ -29,6 +29,13 @@ struct Window {
 /// Units   |coordinates| and radius below 2^15 px, so that squares fit 32 bits
 struct Disc {
   int x = 0, y = 0, radius_px = -1;
+  /// How far to both sides of x it reaches in row py; -1 = not at all.
+  int reach(int py) const {
+    const int rest = radius_px * radius_px - (py - y) * (py - y);
+    int out = -1;
+    while ((out + 1) * (out + 1) <= rest) ++out;
+    return out;
+  }
   bool contains(int py, int px) const {
     return radius_px < 0 || (px - x) * (px - x) + (py - y) * (py - y) <= radius_px * radius_px;
   }
@@ -57,5 +64,19 @@ struct Area {
             std::max(std::min(inside.y_end(), around.y_end()) - y0, 0)};
   }
 };
+
+/// Calls f(y, begin, end) for rows [y_begin, y_end) of an area's bounds with the columns that lie in its window and disc.
+template <class F>
+void each_row(const Area& area, const Window& bounds, int y_begin, int y_end, F&& f) {
+  for (int y = y_begin; y < y_end; ++y) {
+    int begin = bounds.x, end = bounds.x_end();
+    if (area.disc.radius_px >= 0) {
+      const int reach = area.disc.reach(y);
+      begin = std::max(begin, area.disc.x - reach);
+      end = std::min(end, area.disc.x + reach + 1);
+    }
+    if (begin < end) f(y, begin, end);
+  }
+}
 
 }  // namespace duo

@@ -25,3 +25,4 @@ target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/stages/sift/sift.cpp ${
 duoptic_stage(mark_targets)
 duoptic_stage(region)
 duoptic_stage(match_points)
+duoptic_stage(sums)
