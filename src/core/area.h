@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 
 #include "duoptic/image.h"
 
@@ -53,6 +54,23 @@ struct Area {
   bool marked(int y, int x) const { return marks.empty() || (marks.at(y, x) & bits) != 0; }
   bool contains(int y, int x) const { return window.contains(y, x) && disc.contains(y, x) && marked(y, x); }
 
+  /// The first marked column of row y in [x, end), or end. Marks are mostly empty: eight at a time.
+  int next_marked(int y, int x, int end) const {
+    if (marks.empty() || (x < end && marked(y, x))) return x;
+    const std::uint8_t* row = marks.row(y);
+    while (x + 8 <= end && !any_marked(row + x)) x += 8;
+    while (x < end && (row[x] & bits) == 0) ++x;
+    return x;
+  }
+  /// The last marked column of row y in [begin, end), or begin - 1.
+  int last_marked(int y, int begin, int end) const {
+    if (marks.empty()) return end - 1;
+    const std::uint8_t* row = marks.row(y);
+    while (end - 8 >= begin && !any_marked(row + end - 8)) end -= 8;
+    while (end > begin && (row[end - 1] & bits) == 0) --end;
+    return end - 1;
+  }
+
   /// The smallest window that holds all of it in a picture of this size.
   Window bounds(Size size) const {
     const Window inside = window.within(size);
@@ -62,6 +80,13 @@ struct Area {
     const int x0 = std::max(inside.x, around.x), y0 = std::max(inside.y, around.y);
     return {x0, y0, std::max(std::min(inside.x_end(), around.x_end()) - x0, 0),
             std::max(std::min(inside.y_end(), around.y_end()) - y0, 0)};
+  }
+
+ private:
+  bool any_marked(const std::uint8_t* eight) const {
+    std::uint64_t word = 0;
+    std::memcpy(&word, eight, sizeof word);
+    return (word & 0x0101010101010101u * bits) != 0;
   }
 };
 

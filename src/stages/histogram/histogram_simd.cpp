@@ -17,10 +17,8 @@ ColorHistogram color_histogram(Pool& pool, const ColorCount& in) {
     ColorHistogram mine{};
     each_row(in.area, bounds, bounds.y + from, bounds.y + to, [&](int y, int begin, int end) {
       const std::uint8_t *hue = in.hue.row(y), *saturation = in.saturation.row(y), *value = in.value.row(y);
-      for (int x = begin; x < end; ++x) {
-        if (value[x] < in.min_value || !in.area.marked(y, x)) continue;
-        ++mine[static_cast<std::size_t>(color_bin(hue[x], saturation[x]))];
-      }
+      for (int x = in.area.next_marked(y, begin, end); x < end; x = in.area.next_marked(y, x + 1, end))
+        if (value[x] >= in.min_value) ++mine[static_cast<std::size_t>(color_bin(hue[x], saturation[x]))];
     });
     const std::lock_guard lock(merge);
     for (std::size_t i = 0; i < out.size(); ++i) out[i] += mine[i];

@@ -27,9 +27,7 @@ template <class F>
 void each_disparity(View<const std::uint16_t> d_q4, const Area& area, const Window& bounds, int from, int to, F&& f) {
   each_row(area, bounds, bounds.y + from, bounds.y + to, [&](int y, int begin, int end) {
     const std::uint16_t* d = d_q4.row(y);
-    const std::uint8_t* marks = area.marks.empty() ? nullptr : area.marks.row(y);
-    for (int x = begin; x < end; ++x)
-      if (marks == nullptr || (marks[x] & area.bits) != 0) f(d[x]);
+    for (int x = area.next_marked(y, begin, end); x < end; x = area.next_marked(y, x + 1, end)) f(d[x]);
   });
 }
 

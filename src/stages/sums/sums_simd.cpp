@@ -4,7 +4,7 @@
 #include "stages/sums/sums.h"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
 #include <mutex>
 
 #include "core/check.h"
@@ -24,34 +24,13 @@ constexpr auto kDirections = [] {
   return out;
 }();
 
-/// The first marked column in [x, end), or end.
-int next_marked(const Area& area, const std::uint8_t* marks, int x, int end) {
-  if (marks == nullptr || (x < end && (marks[x] & area.bits) != 0)) return x;
-  const std::uint64_t mask = 0x0101010101010101u * area.bits;
-  for (std::uint64_t eight; x + 8 <= end; x += 8) {
-    std::memcpy(&eight, marks + x, 8);
-    if ((eight & mask) != 0) break;
-  }
-  while (x < end && (marks[x] & area.bits) == 0) ++x;
-  return x;
-}
-
-int last_marked(const Area& area, const std::uint8_t* marks, int begin, int end) {
-  int x = end - 1;
-  while (marks != nullptr && x >= begin && (marks[x] & area.bits) == 0) --x;
-  return x;
-}
-
-const std::uint8_t* marks_row(const Area& area, int y) { return area.marks.empty() ? nullptr : area.marks.row(y); }
-
 /// Row y's part of the sums: all but the terms in y.
 void add_row(const Sums& in, int y, int begin, int end, AreaSums& out) {
-  const std::uint8_t* marks = marks_row(in.area, y);
   const std::uint8_t* hue = in.hue.empty() ? nullptr : in.hue.row(y);
   const std::uint16_t* d = in.d_q4.empty() ? nullptr : in.d_q4.row(y);
   std::int64_t count = 0, sum_x = 0, sum_xx = 0, known = 0, sum_d = 0, sum_cos = 0, sum_sin = 0;
   int first = end, last = begin;
-  for (int x = next_marked(in.area, marks, begin, end); x < end; x = next_marked(in.area, marks, x + 1, end)) {
+  for (int x = in.area.next_marked(y, begin, end); x < end; x = in.area.next_marked(y, x + 1, end)) {
     first = std::min(first, x);
     last = x;
     count += 1;
@@ -115,10 +94,9 @@ Pixel outermost(Pool& pool, Size size, const Area& area, Measure measure) {
   pool.rows(bounds.height, [&](int from, int to) {
     Outermost mine;
     each_row(area, bounds, bounds.y + from, bounds.y + to, [&](int y, int begin, int end) {
-      const std::uint8_t* marks = marks_row(area, y);
-      const int first = next_marked(area, marks, begin, end);
+      const int first = area.next_marked(y, begin, end);
       if (first == end) return;
-      const int last = last_marked(area, marks, begin, end);
+      const int last = area.last_marked(y, begin, end);
       mine.offer({y, first}, measure(y, first));
       mine.offer({y, last}, measure(y, last));
     });
