@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "calib/lens.h"
+#include "core/lens.h"
 #include "duoptic/rig.h"
 #include "stages/rectify/rectify.h"
 

@@ -1,4 +1,4 @@
-#include "calib/lens.h"
+#include "core/lens.h"
 
 #include <cmath>
 
