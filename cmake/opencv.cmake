@@ -1,7 +1,11 @@
 # OpenCV by modules: Debian's OpenCVConfig.cmake comes only with libopencv-dev, which pulls in every module and its
 # dependencies; the modules we use have their own small packages. Gives the targets opencv::core, opencv::imgproc, …
 find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
-foreach(module core imgproc imgcodecs calib3d)
+set(opencv_modules core imgproc imgcodecs calib3d)
+if(DUO_TESTS)
+  list(APPEND opencv_modules features2d)  # its SIFT is held against ours
+endif()
+foreach(module ${opencv_modules})
   find_library(OPENCV_${module}_LIBRARY opencv_${module} REQUIRED)
   add_library(opencv::${module} UNKNOWN IMPORTED)
   set_target_properties(opencv::${module} PROPERTIES

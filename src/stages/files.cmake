@@ -22,6 +22,13 @@ duoptic_stage(erode)
 duoptic_stage(sift)
 target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/stages/sift/sift.cpp ${PROJECT_SOURCE_DIR}/src/stages/sift/place.cpp
   ${PROJECT_SOURCE_DIR}/src/stages/sift/histograms_simd.cpp)
+if(DUO_TESTS)
+  foreach(test oracle middlebury)
+    duoptic_test(stages/sift_${test} ${PROJECT_SOURCE_DIR}/src/stages/sift/sift_${test}_test.cpp)
+    target_link_libraries(stages_sift_${test}_test PRIVATE opencv::core opencv::imgproc opencv::imgcodecs opencv::features2d
+      nlohmann_json::nlohmann_json)
+  endforeach()
+endif()
 duoptic_stage(mark_targets)
 duoptic_stage(region)
 duoptic_stage(match_points)

@@ -99,7 +99,8 @@ void sift_cells(const sift::Gradient& gradient, const sift::Neighbourhood& aroun
         hn::Store(rounded(hn::IfThenElseZero(inside, hn::Mul(in_cell, hn::Sub(one, to_d)))), di, share[2 * i]);
         hn::Store(rounded(hn::IfThenElseZero(inside, hn::Mul(in_cell, to_d))), di, share[2 * i + 1]);
       }
-      for (int i = 0; i < n; ++i) {
+      const int count = std::min(n, end - x);
+      for (int i = 0; i < count; ++i) {
         std::int32_t *const a = histogram + low[i], *const b = histogram + high[i];
         a[0] += share[0][i];
         b[0] += share[1][i];

@@ -8,7 +8,7 @@
 
 namespace duo::sift {
 
-constexpr int kMostRadius = 16;  // of a blur, px; the widest is 13
+constexpr int kMostRadius = 16;  // of a blur, px; the widest is 12
 
 /// Half of a symmetric kernel: weight[0] is the centre.
 struct BlurKernel {
@@ -55,7 +55,7 @@ struct Kernels {
 };
 
 /// The stage over either engine's loops.
-void run(const Kernels& kernels, Pool& pool, View<const std::uint8_t> src, const SiftWindow& window, const SiftParams& params,
+void run(const Kernels& kernels, Pool& pool, View<const std::uint8_t> src, const Window& window, const SiftParams& params,
          SiftScratch& scratch, SiftPoints& out);
 
 constexpr int kBorder = 5;  // px of an octave without extrema

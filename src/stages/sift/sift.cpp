@@ -62,7 +62,7 @@ Neighbourhood around(const SiftPoint& p, Size size, float reach, double sigma) {
 /// One call of the stage.
 class Search {
  public:
-  Search(const Kernels& kernels, Pool& pool, const SiftWindow& window, const SiftParams& params, SiftScratch& scratch,
+  Search(const Kernels& kernels, Pool& pool, const Window& window, const SiftParams& params, SiftScratch& scratch,
          SiftPoints& out)
       : kernels_(kernels), pool_(pool), window_(window), params_(params), scratch_(scratch), out_(out) {}
 
@@ -71,8 +71,8 @@ class Search {
     const int grid = 1 << (params_.octaves - 1), margin = params_.margin_px;
     x0_ = std::max(0, window_.x - margin) / grid * grid;
     y0_ = std::max(0, window_.y - margin) / grid * grid;
-    size_ = {std::min(src.width(), window_.x + window_.size.width + margin) - x0_,
-             std::min(src.height(), window_.y + window_.size.height + margin) - y0_};
+    size_ = {std::min(src.width(), window_.x + window_.width + margin) - x0_,
+             std::min(src.height(), window_.y + window_.height + margin) - y0_};
     const Size room = scratch_.blurred[0].size();
     DUO_CHECK(size_.width <= room.width && size_.height <= room.height);
     const View<float> gray = plane(scratch_.blurred[1]);
@@ -118,8 +118,8 @@ class Search {
     // A pixel more than the window on each side: its extremum may be refined to lie inside.
     const int x_begin = std::max(kBorder, ((window_.x - x0_) >> octave_) - 1);
     const int y_begin = std::max(kBorder, ((window_.y - y0_) >> octave_) - 1);
-    const int x_end = std::min(size_.width - kBorder, ((window_.x - x0_ + window_.size.width - 1) >> octave_) + 2);
-    const int y_end = std::min(size_.height - kBorder, ((window_.y - y0_ + window_.size.height - 1) >> octave_) + 2);
+    const int x_end = std::min(size_.width - kBorder, ((window_.x - x0_ + window_.width - 1) >> octave_) + 2);
+    const int y_end = std::min(size_.height - kBorder, ((window_.y - y0_ + window_.height - 1) >> octave_) + 2);
     if (x_begin >= x_end || y_begin >= y_end) return;
     for (int i = 0; i < kLevels + 2; ++i) differences_[i] = plane(scratch_.difference[i]);
     const float threshold = 0.5f * params_.contrast / kLevels * 255;
@@ -162,7 +162,7 @@ class Search {
 
   bool in_window(const SiftScratch::Place& place) const {
     const float step = static_cast<float>(1 << octave_), x = x0_ + place.x * step, y = y0_ + place.y * step;
-    return x >= window_.x && y >= window_.y && x < window_.x + window_.size.width && y < window_.y + window_.size.height;
+    return x >= window_.x && y >= window_.y && x < window_.x + window_.width && y < window_.y + window_.height;
   }
 
   void describe_places() {
@@ -221,7 +221,7 @@ class Search {
 
   const Kernels& kernels_;
   Pool& pool_;
-  const SiftWindow& window_;
+  const Window& window_;
   const SiftParams& params_;
   SiftScratch& scratch_;
   SiftPoints& out_;
@@ -234,14 +234,14 @@ class Search {
 
 }  // namespace
 
-void run(const Kernels& kernels, Pool& pool, View<const std::uint8_t> src, const SiftWindow& window, const SiftParams& params,
+void run(const Kernels& kernels, Pool& pool, View<const std::uint8_t> src, const Window& window, const SiftParams& params,
          SiftScratch& scratch, SiftPoints& out) {
-  DUO_CHECK(window.x >= 0 && window.y >= 0 && !window.size.empty());
-  DUO_CHECK(window.x + window.size.width <= src.width() && window.y + window.size.height <= src.height());
   DUO_CHECK(params.octaves >= 1 && params.octaves <= 8 && params.margin_px >= 0);
   DUO_CHECK(static_cast<int>(scratch.places.size()) >= out.capacity());
   out.count = out.overflow = 0;
-  Search search(kernels, pool, window, params, scratch, out);
+  const Window inside = window.within(src.size());
+  if (inside.empty()) return;
+  Search search(kernels, pool, inside, params, scratch, out);
   search.start(src);
   search.search_octaves();
 }

@@ -4,17 +4,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/area.h"
 #include "core/pool.h"
 #include "core/sift_points.h"
 #include "duoptic/image.h"
 
 namespace duo {
-
-/// Pixels [x, x + width) x [y, y + height) of a picture.
-struct SiftWindow {
-  int x = 0, y = 0;
-  Size size;
-};
 
 struct SiftParams {
   float contrast = 0.04f;  // least contrast of a point, three times as a share of the gray range
@@ -54,7 +49,7 @@ class SiftScratch {
 // one point, at most four.
 // Descriptor: 4x4 cells of 3 scales, 8 directions, trilinear; length 1, clamped at 0.2, length 1 again, times 512, at most 255.
 //
-// Shape    window inside src, no larger than the scratch was made for; points lie in the window
+// Shape    the part of window inside src no larger than the scratch was made for; points lie in it
 // Order    by (octave, level, y, x) of the extremum's pixel, then by angle
 // Units    points in px of src
 // Border   src continues by its edge pixels; so does the window beyond its margin, which changes coarse octaves near its border
@@ -65,10 +60,10 @@ class SiftScratch {
 //          angles are known counts once)
 // Source   Lowe, "Distinctive image features from scale-invariant keypoints", 2004
 namespace ref {
-void sift(View<const std::uint8_t> src, const SiftWindow& window, const SiftParams& params, SiftPoints& out);
+void sift(View<const std::uint8_t> src, const Window& window, const SiftParams& params, SiftPoints& out);
 }
 namespace simd {
-void sift(Pool& pool, View<const std::uint8_t> src, const SiftWindow& window, const SiftParams& params, SiftScratch& scratch,
+void sift(Pool& pool, View<const std::uint8_t> src, const Window& window, const SiftParams& params, SiftScratch& scratch,
           SiftPoints& out);
 }
 

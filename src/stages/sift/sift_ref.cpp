@@ -110,9 +110,9 @@ constexpr Kernels kPlain = {blur, mark, gradient, directions, cells};
 
 namespace ref {
 
-void sift(View<const std::uint8_t> src, const SiftWindow& window, const SiftParams& params, SiftPoints& out) {
+void sift(View<const std::uint8_t> src, const Window& window, const SiftParams& params, SiftPoints& out) {
   Pool alone(1);
-  SiftScratch scratch(window.size, out.capacity(), params);
+  SiftScratch scratch({window.width, window.height}, out.capacity(), params);
   sift::run(sift::kPlain, alone, src, window, params, scratch, out);
 }
 

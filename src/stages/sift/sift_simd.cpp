@@ -124,7 +124,7 @@ HWY_EXPORT(sift_gradient);
 
 namespace simd {
 
-void sift(Pool& pool, View<const std::uint8_t> src, const SiftWindow& window, const SiftParams& params, SiftScratch& scratch,
+void sift(Pool& pool, View<const std::uint8_t> src, const Window& window, const SiftParams& params, SiftScratch& scratch,
           SiftPoints& out) {
   const sift::Kernels kernels = {HWY_DYNAMIC_DISPATCH(sift_blur), HWY_DYNAMIC_DISPATCH(sift_mark),
                                  HWY_DYNAMIC_DISPATCH(sift_gradient), sift::directions_simd(), sift::cells_simd()};
