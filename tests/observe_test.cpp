@@ -107,16 +107,20 @@ struct Chain {
   }
 };
 
-class Observe : public ::testing::Test {
- protected:
-  Observe() { chain_.learn(one_, scene_); }
-  Scene scene_ = make_scene();
-  Chain chain_;
-  Pool one_{1};
+// Pictures, tables and targets as they stand once the tracker has learnt the skin.
+struct Learned {
+  Learned() { chain.learn(one, scene); }
+  Scene scene = make_scene();
+  Chain chain;
+  Pool one{1};
 };
 
-TEST_F(Observe, FindsTheForearm) {
-  const Observation seen = chain_.observe(one_, scene_);
+TEST(Observe, FindsTheForearm) {
+  Learned learned;
+  const Scene& scene = learned.scene;
+  Chain& chain = learned.chain;
+  Pool& one = learned.one;
+  const Observation seen = chain.observe(one, scene);
   EXPECT_NEAR(seen.depth.median_q4, 422, 3);
   EXPECT_LE(std::abs(seen.tip.x - kTip.x) + std::abs(seen.tip.y - kTip.y), 45) << "the end of a cap of radius 25, eroded";
   ASSERT_GT(seen.sums.count, 3000);
@@ -125,28 +129,38 @@ TEST_F(Observe, FindsTheForearm) {
   EXPECT_NEAR(*mean_hue(seen.sums), 12, 3);
 }
 
-TEST_F(Observe, EnginesAndThreadsAgree) {
-  const Observation want = chain_.observe_ref(scene_);
+TEST(Observe, EnginesAndThreadsAgree) {
+  Learned learned;
+  const Scene& scene = learned.scene;
+  Chain& chain = learned.chain;
+  const Observation want = chain.observe_ref(scene);
   for (const int threads : {1, 2, 3}) {
     Pool pool(threads);
     test::each_target(
-        [&](const std::string& target) { EXPECT_EQ(chain_.observe(pool, scene_), want) << target << " threads " << threads; });
+        [&](const std::string& target) { EXPECT_EQ(chain.observe(pool, scene), want) << target << " threads " << threads; });
   }
 }
 
-TEST_F(Observe, DoesNotAllocate) {
+TEST(Observe, DoesNotAllocate) {
+  Learned learned;
+  const Scene& scene = learned.scene;
+  Chain& chain = learned.chain;
   Pool two(2);
-  chain_.observe(two, scene_);
+  chain.observe(two, scene);
   const long before = test::allocations.load();
-  chain_.observe(two, scene_);
-  simd::color_histogram(two, chain_.count(chain_.area()));
+  chain.observe(two, scene);
+  simd::color_histogram(two, chain.count(chain.area()));
   EXPECT_EQ(test::allocations.load(), before);
 }
 
-TEST_F(Observe, Time) {
-  test::print_time("all stages, 1 target", kSize, [&] { chain_.observe(one_, scene_); });
-  chain_.targets[0].window = {180, 120, 200, 320};
-  test::print_time("all stages, 1 target, 200x320", kSize, [&] { chain_.observe(one_, scene_); });
+TEST(Observe, Time) {
+  Learned learned;
+  const Scene& scene = learned.scene;
+  Chain& chain = learned.chain;
+  Pool& one = learned.one;
+  test::print_time("all stages, 1 target", kSize, [&] { chain.observe(one, scene); });
+  chain.targets[0].window = {180, 120, 200, 320};
+  test::print_time("all stages, 1 target, 200x320", kSize, [&] { chain.observe(one, scene); });
 }
 
 }  // namespace
