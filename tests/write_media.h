@@ -62,7 +62,7 @@ inline av::DecodedFrame pattern(AVPixelFormat format, int t) {
 }
 
 struct Encoder {
-  av::Decoder context;  // the owner fits encoders too
+  av::Coder context;
   void encode(const AVFrame* frame, const std::function<void(AVPacket&)>& write) {
     ASSERT_GE(avcodec_send_frame(context.get(), frame), 0);
     const av::Packet packet(av_packet_alloc());
@@ -75,7 +75,7 @@ struct Encoder {
 
 inline Encoder make_encoder(AVCodecID id, AVPixelFormat format, int b_frames = 0, bool global_header = false) {
   const AVCodec* codec = avcodec_find_encoder(id);
-  Encoder encoder{av::Decoder(avcodec_alloc_context3(codec))};
+  Encoder encoder{av::Coder(avcodec_alloc_context3(codec))};
   AVCodecContext& c = *encoder.context;
   c.width = kSize.width;
   c.height = kSize.height;

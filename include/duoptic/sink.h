@@ -1,13 +1,18 @@
-// Writing what was found: each call writes one whole file or leaves nothing under its name.
+// Writing what was found. A file appears whole under its name, or not at all: the functions write one file a call, a Sink takes
+// frame after frame and gives its file the name at the end.
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "duoptic/frame.h"
 #include "duoptic/result.h"
 #include "duoptic/rig.h"
+#include "duoptic/tracker.h"
 
 namespace duo {
 
@@ -18,13 +23,23 @@ Result<Image<float>> read_pfm(const std::filesystem::path& path);
 /// The same for bytes already in memory; `name` stands for them in messages.
 Result<Image<float>> parse_pfm(std::string_view bytes, const std::string& name);
 
+/// The disparities that get the first and the last colour.
+struct DisparityRange {
+  double far_px = 0, near_px = 0;
+  bool empty() const { return near_px <= far_px; }
+};
+/// From the 1st to the 99th percentile of the valid pixels, at least 1 px wide; empty without any.
+DisparityRange disparity_range(View<const std::uint16_t> d_q4);
+
 /// Disparity as colours: the Turbo map (Mikhailov 2019), near is red, none is black, with a legend; the legend is in
-/// metres when `rectified` is given, else in px. The range of the colours is the 1st to 99th percentile of the valid pixels.
+/// metres when `rectified` is given, else in px. The range of the colours is disparity_range().
 Image<Rgb8> draw_disparity(View<const std::uint16_t> d_q4, const Rectified* rectified);
 
 Result<void> write_png(View<const Rgb8> picture, const std::filesystem::path& path);
 Result<void> write_png(View<const std::uint8_t> picture, const std::filesystem::path& path);
 Result<void> write_png(View<const std::uint16_t> picture, const std::filesystem::path& path);
+/// Reads a gray PNG with all its bits; the values of one of 8 bits stay what they are.
+Result<Image<std::uint16_t>> read_png16(const std::filesystem::path& path);
 
 /// Coloured points of all pixels with a depth, in metres in the rig frame: binary little-endian PLY, x y z float, red green
 /// blue uchar.
@@ -33,5 +48,54 @@ Result<void> write_ply(View<const std::uint16_t> d_q4, View<const Rgb8> color, c
 
 /// The cloud drawn from a camera moved sideways and up, so that a person sees its shape without a 3D program.
 Image<Rgb8> draw_cloud(View<const std::uint16_t> d_q4, View<const Rgb8> color, const Rectified& rectified, Size size);
+
+/// What is known of a recording before its first frame.
+struct Recording {
+  std::vector<std::string> sources;  // as the user named them, left first
+  std::string engine, matcher, matcher_preset, tracker, tracker_preset;
+  Rectified rectified;
+  Size size;  // of the raw left picture
+  double frame_s = 1.0 / 30;
+};
+
+struct TrackTimes {
+  double engine_ms = 0, tracker_ms = 0;
+};
+
+/// One instant of a recording; everything lives until write() returns.
+struct TrackedFrame {
+  std::int64_t number = 0;  // from 0, of the source
+  double t_s = 0;           // since the source's first picture
+  const Picture& left;      // raw
+  const Frame& frame;       // with disparity and colour
+  const std::vector<ArmPose>& arms;
+  std::optional<TrackTimes> times;  // written only when given, because they differ from run to run
+};
+
+/// Takes the frames of one recording in their order.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  virtual Result<void> write(const TrackedFrame& frame) = 0;
+  /// Ends the file and gives it its name; without it nothing is left.
+  virtual Result<void> finish() = 0;
+};
+
+/// JSON lines: a header, then a line a frame (see docs/json_lines.md). An empty `path` is stdout.
+///
+/// Errors  those of every written file
+Result<std::unique_ptr<Sink>> make_json_lines(const std::filesystem::path& path, const Recording& recording);
+
+/// The four panels as H.264 in MP4, 4:2:0, which plays everywhere; MPEG-4 part 2 where this machine's libav has no H.264
+/// encoder, which `note` then says.
+///
+/// Errors  those of every written file; no encoder at all
+Result<std::unique_ptr<Sink>> make_panel_video(const std::filesystem::path& path, const Recording& recording,
+                                               std::string& note);
+
+/// The thesis's four panels: the raw left picture with joints as green boxes and bones as red lines, both broken where a joint
+/// is inferred; depth in colours over `range`, with a legend in metres; the arm's pixels in three shades, one a joint; hue as
+/// colour with saturation as brightness. The same size for every frame of a recording, even in both directions.
+Image<Rgb8> draw_panels(const TrackedFrame& frame, const Recording& recording, const DisparityRange& range);
 
 }  // namespace duo

@@ -12,18 +12,16 @@
 namespace duo {
 namespace {
 
-/// An open file descriptor; close() reports what the destructor must ignore.
+/// An open file descriptor.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
-  ~Descriptor() { close(); }
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int get() const { return fd_; }
-  bool close() {
-    if (fd_ < 0) return true;
-    return ::close(std::exchange(fd_, -1)) == 0;
-  }
 
  private:
   int fd_;
@@ -85,23 +83,49 @@ Result<std::string> read_file(const std::filesystem::path& path, std::size_t lim
   }
 }
 
-Result<void> write_file(const std::filesystem::path& path, std::string_view bytes) {
+// The process id keeps two runs that write the same name apart.
+PartialFile::PartialFile(std::filesystem::path path, std::filesystem::path partial)
+    : path_(std::move(path)),
+      partial_(std::move(partial)),
+      fd_(::open(partial_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666)) {}
+
+PartialFile::PartialFile(PartialFile&& other) noexcept
+    : path_(std::move(other.path_)), partial_(std::move(other.partial_)), fd_(std::exchange(other.fd_, -1)) {}
+
+PartialFile::~PartialFile() {
+  if (fd_ < 0) return;
+  ::close(fd_);
+  ::unlink(partial_.c_str());
+}
+
+Result<PartialFile> PartialFile::open(const std::filesystem::path& path) {
   struct stat there {};
   if (::stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode))
     return Error{ErrorCode::kWriteFailed,
                  fmt::format("cannot write '{}': it is a folder or device; give the name of a file", path.string())};
+  PartialFile file(path, path.parent_path() / fmt::format(".{}.{}.partial", path.filename().string(), ::getpid()));
+  if (file.fd_ < 0) return write_error(path, errno);
+  return file;
+}
 
-  // The process id keeps two runs that write the same name apart.
-  const std::filesystem::path partial =
-      path.parent_path() / fmt::format(".{}.{}.partial", path.filename().string(), ::getpid());
-  Descriptor file(::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666));
-  if (file.get() < 0) return write_error(path, errno);
-  const bool whole =
-      write_all(file.get(), bytes) && ::fsync(file.get()) == 0 && file.close() && ::rename(partial.c_str(), path.c_str()) == 0;
-  if (whole) return {};
-  const int error = errno;
-  ::unlink(partial.c_str());
-  return write_error(path, error);
+Result<void> PartialFile::write(std::string_view bytes) {
+  if (!write_all(fd_, bytes)) return write_error(path_, errno);
+  return {};
+}
+
+Result<void> PartialFile::publish() {
+  const bool flushed = ::fsync(fd_) == 0;
+  // A failed close() may be the first to tell of a full disk over a network.
+  if (flushed && ::close(std::exchange(fd_, -1)) == 0 && ::rename(partial_.c_str(), path_.c_str()) == 0) return {};
+  const Error error = write_error(path_, errno);
+  if (fd_ < 0) ::unlink(partial_.c_str());
+  return error;
+}
+
+Result<void> write_file(const std::filesystem::path& path, std::string_view bytes) {
+  DUO_TRY_ASSIGN(PartialFile file, PartialFile::open(path));
+  DUO_TRY(file.write(bytes));
+  return file.publish();
 }
 
 }  // namespace duo

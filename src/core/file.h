@@ -21,4 +21,25 @@ Result<std::string> read_file(const std::filesystem::path& path, std::size_t lim
 /// Errors  no such folder, no permission, disk full, the name belongs to something that is not a file
 Result<void> write_file(const std::filesystem::path& path, std::string_view bytes);
 
+/// A file written piece by piece: a hidden one beside `path` until publish(), gone with this object before that.
+class PartialFile {
+ public:
+  /// Errors  those of write_file()
+  static Result<PartialFile> open(const std::filesystem::path& path);
+  PartialFile(PartialFile&& other) noexcept;
+  PartialFile& operator=(PartialFile&&) = delete;
+  ~PartialFile();
+
+  /// The hidden file, for a library that writes by name.
+  const std::filesystem::path& partial() const { return partial_; }
+  Result<void> write(std::string_view bytes);
+  /// Flushes it to the disk and gives it its name.
+  Result<void> publish();
+
+ private:
+  PartialFile(std::filesystem::path path, std::filesystem::path partial);
+  std::filesystem::path path_, partial_;
+  int fd_ = -1;  // -1: nothing to remove
+};
+
 }  // namespace duo

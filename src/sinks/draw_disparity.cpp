@@ -7,19 +7,40 @@
 #include <vector>
 
 #include "duoptic/sink.h"
+#include "sinks/disparity_colors.h"
 #include "sinks/turbo.h"
 
 namespace duo {
 namespace {
 
-/// The disparities that get the first and the last colour.
-struct Range {
-  double far_px = 0, near_px = 0;
-  bool empty() const { return near_px <= far_px; }
-  double position(double d_px) const { return (d_px - far_px) / (near_px - far_px); }
+double position(const DisparityRange& range, double d_px) { return (d_px - range.far_px) / (range.near_px - range.far_px); }
+
+/// The ends of the map are left out: its first colours look black, which stands for none.
+Rgb8 color_at(double position) { return turbo(0.06 + 0.91 * std::clamp(position, 0.0, 1.0)); }
+
+struct Tick {
+  double d_px;
+  std::string label;
 };
 
-Range range_of(View<const std::uint16_t> d_q4) {
+/// Round values in the order of importance: what fits first, stays.
+std::vector<Tick> ticks(const DisparityRange& range, const Rectified* rectified) {
+  std::vector<Tick> out;
+  for (const double leading :
+       {1.0, 2.0, 5.0, 3.0, 1.5, 4.0, 7.0, 2.5, 6.0, 8.0, 9.0, 1.2, 1.4, 1.6, 1.8, 1.1, 1.3, 1.7, 2.2, 3.5, 4.5})
+    for (const double power : {1.0, 10.0, 100.0, 0.1, 0.01, 1000.0}) {
+      const double value = leading * power;
+      if (!rectified && value != std::floor(value)) continue;
+      const double d_px = rectified ? rectified->focal_px * rectified->baseline_m / value : value;
+      if (d_px >= range.far_px && d_px <= range.near_px)
+        out.push_back({d_px, fmt::format("{:.3g} {}", value, rectified ? "m" : "px")});
+    }
+  return out;
+}
+
+}  // namespace
+
+DisparityRange disparity_range(View<const std::uint16_t> d_q4) {
   std::vector<std::uint16_t> known;
   for (int y = 0; y < d_q4.height(); ++y)
     for (int x = 0; x < d_q4.width(); ++x)
@@ -34,30 +55,16 @@ Range range_of(View<const std::uint16_t> d_q4) {
   return {far_px, std::max(near_px, far_px + 1)};
 }
 
-/// The ends of the map are left out: its first colours look black, which stands for none.
-Rgb8 color_at(double position) { return turbo(0.06 + 0.91 * std::clamp(position, 0.0, 1.0)); }
-
-struct Tick {
-  double d_px;
-  std::string label;
-};
-
-/// Round values in the order of importance: what fits first, stays.
-std::vector<Tick> ticks(const Range& range, const Rectified* rectified) {
-  std::vector<Tick> out;
-  for (const double leading :
-       {1.0, 2.0, 5.0, 3.0, 1.5, 4.0, 7.0, 2.5, 6.0, 8.0, 9.0, 1.2, 1.4, 1.6, 1.8, 1.1, 1.3, 1.7, 2.2, 3.5, 4.5})
-    for (const double power : {1.0, 10.0, 100.0, 0.1, 0.01, 1000.0}) {
-      const double value = leading * power;
-      if (!rectified && value != std::floor(value)) continue;
-      const double d_px = rectified ? rectified->focal_px * rectified->baseline_m / value : value;
-      if (d_px >= range.far_px && d_px <= range.near_px)
-        out.push_back({d_px, fmt::format("{:.3g} {}", value, rectified ? "m" : "px")});
+void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range, View<Rgb8> dst) {
+  for (int y = 0; y < d_q4.height(); ++y)
+    for (int x = 0; x < d_q4.width(); ++x) {
+      const std::uint16_t d = d_q4.at(y, x);
+      dst.at(y, x) = d == Disparity::kNone || range.empty() ? Rgb8{} : color_at(position(range, d / 16.0));
     }
-  return out;
 }
 
-void draw_legend(cv::Mat rgb, const Range& range, const Rectified* rectified) {
+void draw_legend(View<Rgb8> dst, const DisparityRange& range, const Rectified* rectified) {
+  const cv::Mat rgb(dst.height(), dst.width(), CV_8UC3, dst.data(), static_cast<std::size_t>(dst.stride()) * sizeof(Rgb8));
   const double zoom = rgb.rows / 44.0;
   const int margin = static_cast<int>(10 * zoom), bar_top = static_cast<int>(7 * zoom),
             bar_bottom = static_cast<int>(21 * zoom);
@@ -76,7 +83,7 @@ void draw_legend(cv::Mat rgb, const Range& range, const Rectified* rectified) {
   }
   std::vector<std::pair<int, int>> taken;  // labels drawn, from left to right end
   for (const Tick& tick : ticks(range, rectified)) {
-    const int x = margin + static_cast<int>(range.position(tick.d_px) * (bar_width - 1));
+    const int x = margin + static_cast<int>(position(range, tick.d_px) * (bar_width - 1));
     const int width = cv::getTextSize(tick.label, cv::FONT_HERSHEY_SIMPLEX, font, thickness, nullptr).width;
     const int left = x - width / 2, gap = static_cast<int>(8 * zoom);
     const bool fits = left >= 0 && left + width <= rgb.cols && std::none_of(taken.begin(), taken.end(), [&](const auto& other) {
@@ -89,19 +96,12 @@ void draw_legend(cv::Mat rgb, const Range& range, const Rectified* rectified) {
   }
 }
 
-}  // namespace
-
 Image<Rgb8> draw_disparity(View<const std::uint16_t> d_q4, const Rectified* rectified) {
   const int legend_height = std::max(44, 44 * d_q4.width() / 640);
   Image<Rgb8> out({d_q4.width(), d_q4.height() + legend_height});
-  const Range range = range_of(d_q4);
-  for (int y = 0; y < d_q4.height(); ++y)
-    for (int x = 0; x < d_q4.width(); ++x)
-      if (const std::uint16_t d = d_q4.at(y, x); d != Disparity::kNone) out.at(y, x) = color_at(range.position(d / 16.0));
-  const View<Rgb8> legend = out.view().crop(d_q4.height(), 0, {d_q4.width(), legend_height});
-  draw_legend(
-      cv::Mat(legend_height, legend.width(), CV_8UC3, legend.data(), static_cast<std::size_t>(legend.stride()) * sizeof(Rgb8)),
-      range, rectified);
+  const DisparityRange range = disparity_range(d_q4);
+  color_disparity(d_q4, range, out.view().crop(0, 0, d_q4.size()));
+  draw_legend(out.view().crop(d_q4.height(), 0, {d_q4.width(), legend_height}), range, rectified);
   return out;
 }
 

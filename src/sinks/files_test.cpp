@@ -108,6 +108,14 @@ TEST_F(Sinks, PngKeepsEveryPixel) {
       const auto bgr = color_read.at<cv::Vec3b>(y, x);
       ASSERT_EQ((Rgb8{bgr[2], bgr[1], bgr[0]}), color.at(y, x));
     }
+  const auto depth_back = read_png16(folder_ / "depth.png"), gray_back = read_png16(folder_ / "gray.png");
+  ASSERT_TRUE(depth_back && gray_back);
+  for (int x = 0; x < 31; ++x) {
+    EXPECT_EQ(depth_back->at(6, x), depth.at(6, x));
+    EXPECT_EQ(gray_back->at(6, x), gray.at(6, x));
+  }
+  EXPECT_FALSE(read_png16(folder_ / "color.png"));
+  EXPECT_FALSE(read_png16(folder_ / "none.png"));
   EXPECT_FALSE(write_png(View<const std::uint8_t>(), folder_ / "empty.png"));
   EXPECT_FALSE(write_png(View<const Rgb8>(), folder_ / "empty.png"));
   EXPECT_EQ(files(), 3);

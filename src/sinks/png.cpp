@@ -45,4 +45,25 @@ Result<void> write_png(View<const std::uint16_t> picture, const std::filesystem:
   return write(mat_of(picture, CV_16UC1), path);
 }
 
+Result<Image<std::uint16_t>> read_png16(const std::filesystem::path& path) {
+  constexpr std::size_t kMaxBytes = std::size_t{1} << 28;
+  DUO_TRY_ASSIGN(const std::string bytes, read_file(path, kMaxBytes, "PNG picture"));
+  const auto refused = [&](const char* why) {
+    return Error{ErrorCode::kBadInput, fmt::format("cannot read PNG picture '{}': {}", path.string(), why)};
+  };
+  cv::Mat read;
+  try {
+    const cv::Mat coded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
+    if (!coded.empty()) read = cv::imdecode(coded, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception&) {
+    // The same as when it returns nothing.
+  }
+  if (read.empty()) return refused("it is no picture, or cut short");
+  if (read.channels() != 1) return refused("it is coloured; give a gray one");
+  Image<std::uint16_t> out({read.cols, read.rows});
+  cv::Mat into(read.rows, read.cols, CV_16UC1, out.row(0), static_cast<std::size_t>(out.stride()) * sizeof(std::uint16_t));
+  read.convertTo(into, CV_16U);
+  return out;
+}
+
 }  // namespace duo

@@ -1,38 +1,20 @@
-// Owners of libav objects, and its error numbers as text.
+// Reading with libav: decoders, and their frames as our pictures.
 #pragma once
 
-extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libswscale/swscale.h>
-}
-
 #include <cstdint>
-#include <memory>
-#include <string>
 
+#include "core/libav.h"
 #include "duoptic/frame.h"
 #include "duoptic/result.h"
 
 namespace duo::av {
 
-struct Free {
+struct CloseInput {
   void operator()(AVFormatContext* p) const { avformat_close_input(&p); }
-  void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
-  void operator()(AVFrame* p) const { av_frame_free(&p); }
-  void operator()(AVPacket* p) const { av_packet_free(&p); }
-  void operator()(SwsContext* p) const { sws_freeContext(p); }
 };
-using Container = std::unique_ptr<AVFormatContext, Free>;
-using Decoder = std::unique_ptr<AVCodecContext, Free>;
-using DecodedFrame = std::unique_ptr<AVFrame, Free>;
-using Packet = std::unique_ptr<AVPacket, Free>;
-
-inline std::string reason(int error) {
-  char text[AV_ERROR_MAX_STRING_SIZE] = {};
-  av_strerror(error, text, sizeof text);
-  return text;
-}
+using Container = std::unique_ptr<AVFormatContext, CloseInput>;
+using Decoder = Coder;
+using DecodedFrame = CodedFrame;
 
 /// Opens a decoder that runs on the caller's thread alone; `configure` sees it before it is opened.
 ///
@@ -62,7 +44,7 @@ class ToRgb {
   static constexpr int kMaxSide = 16384;
 
  private:
-  std::unique_ptr<SwsContext, Free> scaler_;
+  Scaler scaler_;
   int format_ = -1, colorspace_ = -1, range_ = -1;
   Size size_;
 };

@@ -1,0 +1,204 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <string_view>
+
+#include "core/check.h"
+#include "sinks/disparity_colors.h"
+#include "sinks/panels.h"
+
+namespace duo {
+namespace {
+
+const cv::Scalar kText(228, 228, 228), kFaint(140, 140, 140), kBox(60, 230, 80), kBone(235, 45, 40);
+constexpr Rgb8 kGround = {18, 20, 24};
+
+/// Four cells: a title, a picture as wide as the raw one but at most kMaxWidth, and a caption.
+struct Layout {
+  static constexpr int kMaxWidth = 640;
+  Size picture;
+  int title_px, caption_px, gap_px;
+
+  explicit Layout(Size raw) {
+    picture.width = std::max(2, std::min(raw.width, kMaxWidth) & ~1);
+    picture.height = std::max(2, static_cast<int>(std::int64_t{raw.height} * picture.width / std::max(raw.width, 1)) & ~1);
+    title_px = scaled(28);
+    caption_px = scaled(46);
+    gap_px = scaled(4);
+  }
+  int scaled(int px_at_full_width) const { return std::max(2, px_at_full_width * picture.width / kMaxWidth & ~1); }
+  double font() const { return 0.5 * picture.width / kMaxWidth; }
+  int stroke() const { return 1; }
+  Size whole() const { return {2 * picture.width + gap_px, 2 * (title_px + picture.height + caption_px) + gap_px}; }
+};
+
+cv::Mat mat_of(View<Rgb8> picture) {
+  return {picture.height(), picture.width(), CV_8UC3, picture.data(),
+          static_cast<std::size_t>(picture.stride()) * sizeof(Rgb8)};
+}
+
+/// One of the four, cut into its three parts.
+struct Cell {
+  View<Rgb8> title, picture, caption;
+
+  Cell(View<Rgb8> whole, const Layout& layout, int row, int column) {
+    const int x = column * (layout.picture.width + layout.gap_px), w = layout.picture.width;
+    int y = row * (layout.title_px + layout.picture.height + layout.caption_px + layout.gap_px);
+    title = whole.crop(y, x, {w, layout.title_px});
+    picture = whole.crop(y += layout.title_px, x, layout.picture);
+    caption = whole.crop(y + layout.picture.height, x, {w, layout.caption_px});
+  }
+};
+
+enum class Align { kLeft, kRight };
+
+void put_text(View<Rgb8> dst, const std::string& text, cv::Point at, const cv::Scalar& color, const Layout& layout,
+              Align align = Align::kLeft) {
+  constexpr int kFace = cv::FONT_HERSHEY_SIMPLEX;
+  if (align == Align::kRight) at.x -= cv::getTextSize(text, kFace, layout.font(), layout.stroke(), nullptr).width;
+  cv::putText(mat_of(dst), text, at, kFace, layout.font(), color, layout.stroke(), cv::LINE_AA);
+}
+
+void put_title(const Cell& cell, const Layout& layout, const std::string& left, const std::string& right) {
+  const int base = layout.scaled(20), margin = layout.scaled(10);
+  put_text(cell.title, left, {margin, base}, kText, layout);
+  put_text(cell.title, right, {cell.title.width() - margin, base}, kFaint, layout, Align::kRight);
+}
+
+/// Scales `src` into `dst`, whole, with the ground left beside or above it where the shapes differ.
+void fit(View<Rgb8> src, View<Rgb8> dst) {
+  const double scale =
+      std::min(static_cast<double>(dst.width()) / src.width(), static_cast<double>(dst.height()) / src.height());
+  const Size size = {std::clamp(static_cast<int>(std::lround(src.width() * scale)), 1, dst.width()),
+                     std::clamp(static_cast<int>(std::lround(src.height() * scale)), 1, dst.height())};
+  cv::Mat into = mat_of(dst.crop((dst.height() - size.height) / 2, (dst.width() - size.width) / 2, size));
+  cv::resize(mat_of(src), into, into.size(), 0, 0, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+}
+
+void broken_line(cv::Mat& rgb, cv::Point2d a, cv::Point2d b, const cv::Scalar& color, int thickness, double dash_px) {
+  const cv::Point2d along = b - a;
+  const double length = std::hypot(along.x, along.y);
+  for (double at = 0; at < length; at += 2 * (dash_px + thickness)) {  // round ends make a dash longer
+    const double end = std::min(at + dash_px, length);
+    cv::line(rgb, a + along * (at / length), a + along * (end / length), color, thickness, cv::LINE_AA);
+  }
+}
+
+/// The skeleton over the raw left picture.
+class Skeleton {
+ public:
+  Skeleton(View<Rgb8> dst, const Recording& recording, const Layout& layout)
+      : rgb_(mat_of(dst)),
+        scale_(static_cast<double>(dst.width()) / recording.size.width),
+        focal_px_(recording.rectified.focal_px * scale_),
+        thick_(layout.scaled(4)),
+        dash_px_(layout.scaled(8)) {}
+
+  void draw(const ArmPose& arm) {
+    for (std::size_t j = 0; j + 1 < kArmJoints; ++j) bone(arm.joints[j], arm.joints[j + 1]);
+    for (const Keypoint& joint : arm.joints) box(joint);
+  }
+
+ private:
+  cv::Point2d place(const Keypoint& k) const { return {(k.u_px + 0.5) * scale_ - 0.5, (k.v_px + 0.5) * scale_ - 0.5}; }
+
+  void bone(const Keypoint& a, const Keypoint& b) {
+    if (a.state == JointState::kLost || b.state == JointState::kLost) return;
+    if (a.state == JointState::kSeen && b.state == JointState::kSeen)
+      cv::line(rgb_, place(a), place(b), kBone, thick_, cv::LINE_AA);
+    else
+      broken_line(rgb_, place(a), place(b), kBone, thick_, dash_px_);
+  }
+
+  void box(const Keypoint& joint) {
+    if (joint.state == JointState::kLost) return;
+    constexpr double kHalf_m = 0.05, kMin_px = 5, kMax_px = 60;
+    const double half = std::clamp(focal_px_ * kHalf_m / std::max(joint.p_in_rig_m.z, 0.1), kMin_px, kMax_px);
+    const cv::Point2d c = place(joint), dx(half, 0), dy(0, half);
+    const cv::Point2d corners[] = {c - dx - dy, c + dx - dy, c + dx + dy, c - dx + dy};
+    if (joint.state == JointState::kSeen) {
+      cv::rectangle(rgb_, corners[0], corners[2], kBox, thick_ - 1, cv::LINE_AA);
+      cv::circle(rgb_, c, thick_, kBox, cv::FILLED, cv::LINE_AA);
+      return;
+    }
+    for (std::size_t i = 0; i < 4; ++i) broken_line(rgb_, corners[i], corners[(i + 1) % 4], kBox, thick_ - 1, dash_px_ / 2);
+  }
+
+  cv::Mat rgb_;
+  double scale_, focal_px_;
+  int thick_;
+  double dash_px_;
+};
+
+/// "hand 1.32 m +-2 cm" for each joint; a line an arm.
+void put_joints(View<Rgb8> dst, const std::vector<ArmPose>& arms, const Layout& layout) {
+  static const cv::Scalar kColors[] = {kBox, {250, 190, 60}, kFaint};
+  for (std::size_t arm = 0; arm < arms.size() && arm < 2; ++arm)
+    for (std::size_t j = 0; j < kArmJoints; ++j) {
+      const Keypoint& k = arms[arm].joints[j];
+      const std::string text = k.state == JointState::kLost ? fmt::format("{} lost", kJointNames[j])
+                                                            : fmt::format("{} {:.2f} m +-{:.0f} cm", kJointNames[j],
+                                                                          k.p_in_rig_m.z, std::ceil(100 * k.sigma_m));
+      const int x = layout.scaled(10) + static_cast<int>(j) * (dst.width() - layout.scaled(20)) / kArmJoints;
+      put_text(dst, text, {x, layout.scaled(arms.size() > 1 ? 18 : 26) + static_cast<int>(arm) * layout.scaled(20)},
+               kColors[static_cast<std::size_t>(k.state)], layout);
+    }
+}
+
+void put_shades(View<Rgb8> dst, const Layout& layout) {
+  for (std::size_t j = 0; j < kArmJoints; ++j) {
+    const int x = layout.scaled(10) + static_cast<int>(j) * layout.scaled(120);
+    const Rgb8 c = kShades[j];
+    cv::rectangle(mat_of(dst), cv::Rect(x, layout.scaled(14), layout.scaled(18), layout.scaled(16)), cv::Scalar(c.r, c.g, c.b),
+                  cv::FILLED);
+    put_text(dst, std::string(kJointNames[j]), {x + layout.scaled(26), layout.scaled(28)}, kText, layout);
+  }
+}
+
+void put_hues(View<Rgb8> dst, const Layout& layout) {
+  const int margin = layout.scaled(10), top = layout.scaled(8), bottom = layout.scaled(22), width = dst.width() - 2 * margin;
+  for (int x = 0; x < width; ++x)
+    for (int y = top; y < bottom; ++y) dst.at(y, margin + x) = color_of_hue(256 * x / width);
+  for (const int degrees : {0, 60, 120, 180, 240, 300})
+    put_text(dst, std::to_string(degrees), {margin + degrees * width / 360, layout.scaled(40)}, kText, layout);
+}
+
+}  // namespace
+
+Size panels_size(const Recording& recording) { return Layout(recording.size).whole(); }
+
+Image<Rgb8> draw_panels(const TrackedFrame& frame, const Recording& recording, const DisparityRange& range) {
+  DUO_CHECK(frame.left.pixels.size() == recording.size && frame.frame.color.size() == frame.frame.disparity.d_q4.size());
+  const Layout layout(recording.size);
+  Image<Rgb8> out(layout.whole());
+  for (int y = 0; y < out.height(); ++y) std::fill_n(out.row(y), out.width(), kGround);
+  const Cell camera(out, layout, 0, 0), depth(out, layout, 0, 1), region(out, layout, 1, 0), hue(out, layout, 1, 1);
+
+  fit(frame.left.pixels.clone(), camera.picture);
+  Skeleton skeleton(camera.picture, recording, layout);
+  for (const ArmPose& arm : frame.arms) skeleton.draw(arm);
+  put_title(camera, layout, "left camera: joints and bones", fmt::format("frame {}   {:.2f} s", frame.number, frame.t_s));
+  put_joints(camera.caption, frame.arms, layout);
+
+  Image<Rgb8> drawn(frame.frame.color.size());
+  color_disparity(frame.frame.disparity.d_q4, range, drawn);
+  fit(drawn, depth.picture);
+  put_title(depth, layout, "depth", "metres");
+  draw_legend(depth.caption, range, &recording.rectified);
+
+  draw_arm_region(frame.frame, recording.rectified, frame.arms, drawn);
+  fit(drawn, region.picture);
+  put_title(region, layout, "arm region", "by nearest joint");
+  put_shades(region.caption, layout);
+
+  draw_hue(frame.frame.color, drawn);
+  fit(drawn, hue.picture);
+  put_title(hue, layout, "hue and saturation", "hue, degrees; brightness = saturation");
+  put_hues(hue.caption, layout);
+  return out;
+}
+
+}  // namespace duo

@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/file.h"
+#include "duoptic/sink.h"
+
+namespace duo {
+namespace {
+
+constexpr int kVersion = 1;
+constexpr const char* kStates[] = {"seen", "inferred", "lost"};
+
+/// A number with `digits` decimals, so that every run prints the same; never "-0.00".
+std::string number(double value, int digits) {
+  if (!std::isfinite(value)) return "null";  // JSON knows no other way
+  const std::string text = fmt::format("{:.{}f}", value, digits);
+  return text[0] == '-' && text.find_first_not_of("-0.") == std::string::npos ? text.substr(1) : text;
+}
+
+/// Quoted; bytes that are no UTF-8 (names of files may be anything) become U+FFFD.
+std::string quoted(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string header_line(const Recording& r) {
+  std::vector<std::string> rotation, sources;
+  for (const double m : r.rectified.rig_from_left.m) rotation.push_back(number(m, 9));
+  for (const std::string& source : r.sources) sources.push_back(quoted(source));
+  return fmt::format(
+      R"({{"type":"header","version":{},"units":{{"length":"m","time":"s","uv":"px of the raw left picture"}},)"
+      R"("rig_from_left":[{}],"focal_px":{},"baseline_m":{},"sources":[{}],"engine":{},"matcher":{},"matcher_preset":{},)"
+      R"("tracker":{},"tracker_preset":{},"width":{},"height":{},"frame_s":{}}})"
+      "\n",
+      kVersion, fmt::join(rotation, ","), number(r.rectified.focal_px, 4), number(r.rectified.baseline_m, 6),
+      fmt::join(sources, ","), quoted(r.engine), quoted(r.matcher), quoted(r.matcher_preset), quoted(r.tracker),
+      quoted(r.tracker_preset), r.size.width, r.size.height, number(r.frame_s, 6));
+}
+
+std::string joint_text(const Keypoint& k) {
+  const bool known = k.state != JointState::kLost;
+  const std::string p =
+      known ? fmt::format("[{},{},{}]", number(k.p_in_rig_m.x, 4), number(k.p_in_rig_m.y, 4), number(k.p_in_rig_m.z, 4))
+            : "null";
+  const std::string uv = known ? fmt::format("[{},{}]", number(k.u_px, 2), number(k.v_px, 2)) : "null";
+  return fmt::format(R"({{"p_in_rig_m":{},"uv_left_px":{},"state":"{}","confidence":{},"sigma_m":{}}})", p, uv,
+                     kStates[static_cast<int>(k.state)], number(k.confidence, 3), number(k.sigma_m, 4));
+}
+
+std::string frame_line(const TrackedFrame& frame) {
+  std::string line = fmt::format(R"({{"type":"frame","frame":{},"t_s":{})", frame.number, number(frame.t_s, 6));
+  for (std::size_t arm = 0; arm < frame.arms.size(); ++arm) {
+    line += arm == 0 ? R"(,"joints":{)" : R"(,"joints2":{)";
+    for (std::size_t j = 0; j < kArmJoints; ++j)
+      line += fmt::format(R"({}"{}":{})", j == 0 ? "" : ",", kJointNames[j], joint_text(frame.arms[arm].joints[j]));
+    line += "}";
+  }
+  if (frame.times)
+    line += fmt::format(R"(,"engine_ms":{},"tracker_ms":{})", number(frame.times->engine_ms, 3),
+                        number(frame.times->tracker_ms, 3));
+  return line + "}\n";
+}
+
+class ToFile final : public Sink {
+ public:
+  explicit ToFile(PartialFile file) : file_(std::move(file)) {}
+  Result<void> begin(const Recording& recording) { return file_.write(header_line(recording)); }
+  Result<void> write(const TrackedFrame& frame) override { return file_.write(frame_line(frame)); }
+  Result<void> finish() override { return file_.publish(); }
+
+ private:
+  PartialFile file_;
+};
+
+class ToStdout final : public Sink {
+ public:
+  Result<void> begin(const Recording& recording) { return print(header_line(recording)); }
+  Result<void> write(const TrackedFrame& frame) override { return print(frame_line(frame)); }
+  Result<void> finish() override { return {}; }
+
+ private:
+  /// Flushed line by line: who reads the pipe sees each frame when it is there.
+  static Result<void> print(const std::string& line) {
+    if (std::fwrite(line.data(), 1, line.size(), stdout) == line.size() && std::fflush(stdout) == 0) return {};
+    return Error{ErrorCode::kWriteFailed, "cannot write to stdout; give a file with room instead"};
+  }
+};
+
+template <class T>
+Result<std::unique_ptr<Sink>> begun(std::unique_ptr<T> sink, const Recording& recording) {
+  DUO_TRY(sink->begin(recording));
+  return std::unique_ptr<Sink>(std::move(sink));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Sink>> make_json_lines(const std::filesystem::path& path, const Recording& recording) {
+  if (path.empty()) return begun(std::make_unique<ToStdout>(), recording);
+  DUO_TRY_ASSIGN(PartialFile file, PartialFile::open(path));
+  return begun(std::make_unique<ToFile>(std::move(file)), recording);
+}
+
+}  // namespace duo

@@ -1,0 +1,42 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "duoptic/sink.h"
+#include "sinks/panels.h"
+#include "sinks/video_writer.h"
+
+namespace duo {
+namespace {
+
+class PanelVideo final : public Sink {
+ public:
+  PanelVideo(VideoWriter video, Recording recording) : video_(std::move(video)), recording_(std::move(recording)) {}
+
+  Result<void> write(const TrackedFrame& frame) override {
+    if (range_.empty()) {
+      // Fixed from the first frame on, so that a colour is a depth; with room for an arm stretched out to the cameras.
+      constexpr double kNearer = 1.5;
+      range_ = disparity_range(frame.frame.disparity.d_q4);
+      range_.near_px *= kNearer;
+    }
+    return video_.write(draw_panels(frame, recording_, range_));
+  }
+  Result<void> finish() override { return video_.finish(); }
+
+ private:
+  VideoWriter video_;
+  Recording recording_;
+  DisparityRange range_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Sink>> make_panel_video(const std::filesystem::path& path, const Recording& recording,
+                                               std::string& note) {
+  DUO_TRY_ASSIGN(VideoWriter video, VideoWriter::open(path, panels_size(recording), recording.frame_s));
+  if (!video.is_h264()) note = fmt::format("libav has no H.264 encoder here (libx264); {} is MPEG-4 part 2", path.string());
+  return std::unique_ptr<Sink>(std::make_unique<PanelVideo>(std::move(video), recording));
+}
+
+}  // namespace duo
