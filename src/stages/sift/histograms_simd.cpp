@@ -17,8 +17,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 using DF = hn::CappedTag<float, 16>;
 using DI = hn::RebindToSigned<DF>;
 
-HWY_INLINE hn::VFromD<DI> rounded(hn::VFromD<DF> positive) {
-  return hn::ConvertTo(DI(), hn::Add(positive, hn::Set(DF(), 0.5f)));
+/// To the nearest, halves to even, for values in [0, 2^23): added to 2^23 they are the last bits of the sum.
+HWY_INLINE hn::VFromD<DI> rounded(hn::VFromD<DF> value) {
+  const auto sum = hn::Add(value, hn::Set(DF(), 8388608.0f));
+  return hn::Sub(hn::BitCast(DI(), sum), hn::Set(DI(), 0x4B000000));
 }
 
 void sift_directions(const sift::Gradient& gradient, const sift::Neighbourhood& around, std::int32_t* histogram) {
@@ -96,8 +98,8 @@ void sift_cells(const sift::Gradient& gradient, const sift::Neighbourhood& aroun
       for (int i = 0; i < 4; ++i) {
         const auto in_row = hn::Mul(value, (i & 2) ? to_r : hn::Sub(one, to_r));
         const auto in_cell = hn::Mul(in_row, (i & 1) ? to_c : hn::Sub(one, to_c));
-        hn::Store(rounded(hn::IfThenElseZero(inside, hn::Mul(in_cell, hn::Sub(one, to_d)))), di, share[2 * i]);
-        hn::Store(rounded(hn::IfThenElseZero(inside, hn::Mul(in_cell, to_d))), di, share[2 * i + 1]);
+        hn::Store(rounded(hn::Mul(in_cell, hn::Sub(one, to_d))), di, share[2 * i]);
+        hn::Store(rounded(hn::Mul(in_cell, to_d)), di, share[2 * i + 1]);
       }
       const int count = std::min(n, end - x);
       for (int i = 0; i < count; ++i) {

@@ -66,7 +66,10 @@ void gradient(View<const float> src, View<float> magnitude, View<float> turns, i
     }
 }
 
-/// Histogram units of one sample.
+/// Halves to even.
+std::int32_t rounded(float value) { return static_cast<std::int32_t>(std::nearbyint(value)); }
+
+/// Histogram units of one sample, below 2^21.
 float value_of(const Gradient& gradient, const Neighbourhood& n, int y, int x) {
   return gradient.magnitude.at(y, x) * n.y_weight[y - n.y_begin] * n.x_weight[x - n.x_begin];
 }
@@ -74,8 +77,8 @@ float value_of(const Gradient& gradient, const Neighbourhood& n, int y, int x) {
 void directions(const Gradient& gradient, const Neighbourhood& n, std::int32_t* histogram) {
   for (int y = n.y_begin; y < n.y_end; ++y)
     for (int x = n.x_begin; x < n.x_end; ++x) {
-      const int direction = static_cast<int>(gradient.turns.at(y, x) * kDirections + 0.5f);
-      histogram[direction % kDirections] += static_cast<std::int32_t>(value_of(gradient, n, y, x) + 0.5f);
+      const int direction = rounded(gradient.turns.at(y, x) * kDirections);
+      histogram[direction % kDirections] += rounded(value_of(gradient, n, y, x));
     }
 }
 
@@ -98,7 +101,7 @@ void cells(const Gradient& gradient, const Neighbourhood& n, const CellFrame& fr
         const float in_cell = in_row * ((i & 2) ? to_c : 1 - to_c);
         const float share = in_cell * ((i & 1) ? to_d : 1 - to_d);
         const int cell = (r + (i >> 2)) * kBins + c + (i >> 1 & 1);
-        histogram[cell * kCellDirections + (d + (i & 1)) % kCellDirections] += static_cast<std::int32_t>(share + 0.5f);
+        histogram[cell * kCellDirections + (d + (i & 1)) % kCellDirections] += rounded(share);
       }
     }
 }
