@@ -3,17 +3,21 @@
 #include <fmt/format.h>
 
 #include "duoptic/engine.h"
+#include "duoptic/tracker.h"
 #include "engines/engines.h"
 #include "matchers/pyramid/pyramid_params.h"
+#include "trackers/arm/arm_tracker.h"
 
 namespace duo {
 
 Result<std::unique_ptr<Engine>> make_engine(std::string_view name, int threads) {
   if (threads < 1 || threads > 256)
-    return Error{ErrorCode::kBadInput, fmt::format("make the engine: {} threads is not in 1 .. 256; leave it out for all cores", threads)};
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("make the engine: {} threads is not in 1 .. 256; leave it out for all cores", threads)};
   if (name == "simd" || name == "auto") return make_simd_engine(threads);
   if (name == "ref") return make_ref_engine();
-  return Error{ErrorCode::kBadInput, fmt::format("make the engine: no engine is called \"{}\"; choose one of: auto, simd, ref", name)};
+  return Error{ErrorCode::kBadInput,
+               fmt::format("make the engine: no engine is called \"{}\"; choose one of: auto, simd, ref", name)};
 }
 
 std::vector<std::string> matcher_names() { return {"pyramid"}; }
@@ -25,12 +29,20 @@ std::vector<std::string> matcher_presets(std::string_view matcher) {
 
 Result<std::vector<ParameterInfo>> matcher_parameters(std::string_view matcher, std::string_view preset) {
   if (matcher != "pyramid")
-    return Error{ErrorCode::kBadInput, fmt::format("list parameters: no matcher is called \"{}\"; choose one of: pyramid", matcher)};
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("list parameters: no matcher is called \"{}\"; choose one of: pyramid", matcher)};
   DUO_TRY_ASSIGN(const PyramidParams params, pyramid_params(preset, {}));
   std::vector<ParameterInfo> out;
   for (const auto& p : kPyramidParameters)
     out.push_back({p.name, p.unit, p.help, double(params.*p.member), double(p.min), double(p.max)});
   return out;
+}
+
+Result<std::unique_ptr<Tracker>> make_tracker(std::string_view name, std::string_view preset) {
+  if (name != "arm")
+    return Error{ErrorCode::kBadInput, fmt::format("make the tracker: no tracker is called \"{}\"; choose one of: arm", name)};
+  if (preset == "default") return make_arm_tracker();
+  return Error{ErrorCode::kBadInput, fmt::format("make the tracker: arm has no preset \"{}\"; choose one of: default", preset)};
 }
 
 }  // namespace duo

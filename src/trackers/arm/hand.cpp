@@ -1,0 +1,91 @@
+#include "trackers/arm/hand.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duo::arm {
+
+HandFinder::HandFinder(const Grid& grid) {
+  far_.reserve(static_cast<std::size_t>(grid.size()));
+  depths_m_.reserve(static_cast<std::size_t>(grid.size()));
+}
+
+/// Gathers the cells a hand may cover; returns the distance of the tips, which single far cells do not move. 0 = too few.
+double HandFinder::collect(const Grid& grid, std::span<const int> cells, Vec3 elbow, double fore_m, const Gate* gate) {
+  constexpr double kBeyondM = 0.30;  // fingertips lie this far behind the wrist at most
+  constexpr std::size_t kLeastCells = 10;
+  constexpr double kTips = 0.97;  // quantile of distance
+  far_.clear();
+  for (const int i : cells) {
+    const Vec3 p = grid.point(i);
+    if (gate && norm(p - gate->centre) > gate->radius_m) continue;
+    if (const double d = norm(p - elbow); d <= fore_m + kBeyondM) far_.push_back({d, p, i});
+  }
+  if (far_.size() < kLeastCells) return 0;
+  const auto tip = far_.begin() + static_cast<std::ptrdiff_t>(kTips * static_cast<double>(far_.size() - 1));
+  std::nth_element(far_.begin(), tip, far_.end(), [](const Far& a, const Far& b) { return a.distance_m < b.distance_m; });
+  return tip->distance_m;
+}
+
+double HandFinder::median_of_depths() {
+  const auto middle = depths_m_.begin() + static_cast<std::ptrdiff_t>(depths_m_.size() / 2);
+  std::nth_element(depths_m_.begin(), middle, depths_m_.end());
+  return *middle;
+}
+
+/// Mean shift of a slab across the arm, `along_m` from the elbow; its depth is the median there.
+Vec3 HandFinder::centre(Vec3 elbow, Vec3 start, double along_m, double z_m) {
+  constexpr int kShifts = 2;
+  constexpr double kSlabM = 0.04, kAcrossM = 0.07, kDepthM = 0.12;
+  constexpr std::size_t kLeastCells = 6;
+  Vec3 axis = normalized(start - elbow), at = elbow + along_m * axis;
+  for (int shift = 0; shift < kShifts; ++shift) {
+    Vec3 mean;
+    double weights = 0;
+    depths_m_.clear();
+    for (const Far& f : far_) {
+      const double along = dot(f.p - at, axis);
+      if (std::abs(f.p.z - z_m) > kDepthM || std::abs(along) > kSlabM || norm(f.p - at - along * axis) > kAcrossM) continue;
+      const double weight = f.p.z * f.p.z;  // a cell covers more of the hand where it is far
+      mean = mean + weight * f.p;
+      weights += weight;
+      depths_m_.push_back(f.p.z);
+    }
+    if (depths_m_.size() < kLeastCells) break;
+    mean = (1 / weights) * mean;
+    const double z = median_of_depths();
+    const Vec3 across = mean - dot(mean - at, axis) * axis;
+    axis = normalized((z / across.z) * across - elbow);
+    at = elbow + along_m * axis;
+    at = (z / at.z) * at;
+  }
+  return at;
+}
+
+std::optional<HandSeen> HandFinder::find(const Grid& grid, const Silhouette& silhouette, std::span<const int> cells, Vec3 elbow,
+                                         double fore_m, double centre_m, const Gate* gate, const Params& params) {
+  constexpr double kBeyondTipM = 0.03;
+  constexpr std::size_t kLeastCells = 8;
+  HandSeen out;
+  out.tip_m = collect(grid, cells, elbow, fore_m, gate);
+  if (!(out.tip_m > 0)) return {};
+  Vec3 mean;
+  double weights = 0;
+  depths_m_.clear();
+  for (const Far& f : far_) {
+    if (f.distance_m < out.tip_m - params.hand_length_m || f.distance_m > out.tip_m + kBeyondTipM) continue;
+    const double weight = f.p.z * f.p.z, area = grid.area_m2(f.p.z);
+    mean = mean + weight * f.p;
+    weights += weight;
+    depths_m_.push_back(f.p.z);
+    out.area_m2 += area;
+    if (silhouette.solid[static_cast<std::size_t>(f.cell)]) out.solid_m2 += area;
+    if (silhouette.skin[static_cast<std::size_t>(f.cell)]) out.skin_m2 += area;
+  }
+  if (depths_m_.size() < kLeastCells) return {};
+  const Vec3 start = (1 / weights) * mean;
+  out.p = behind(centre(elbow, start, out.tip_m - centre_m, median_of_depths()), params.hand_depth_m);
+  return out;
+}
+
+}  // namespace duo::arm

@@ -1,0 +1,9 @@
+# Explicit names, no glob: what is not listed is not built.
+set(dir ${PROJECT_SOURCE_DIR}/src/trackers/arm)
+target_sources(duoptic PRIVATE
+  ${dir}/arm.cpp ${dir}/arm_candidates.cpp ${dir}/arm_learn.cpp ${dir}/arm_start.cpp ${dir}/arm_tracker.cpp ${dir}/background.cpp
+  ${dir}/body_map.cpp ${dir}/bones.cpp ${dir}/color_table.cpp ${dir}/fit_torso.cpp ${dir}/gray_levels.cpp ${dir}/grid.cpp
+  ${dir}/hand.cpp ${dir}/patches.cpp ${dir}/regions.cpp ${dir}/silhouette.cpp ${dir}/torso.cpp)
+duoptic_test(trackers/arm_parts ${dir}/arm_parts_test.cpp)
+duoptic_test(trackers/arm_tracker ${dir}/arm_tracker_test.cpp)
+duoptic_test(trackers/arm_clips ${dir}/arm_clips_test.cpp)
