@@ -70,12 +70,13 @@ void put_title(const Cell& cell, const Layout& layout, const std::string& left, 
 
 /// Scales `src` into `dst`, whole, with the ground left beside or above it where the shapes differ.
 void fit(View<Rgb8> src, View<Rgb8> dst) {
+  constexpr double kCoarse = 0.7;  // from here on pixels are left out, and have to be averaged instead
   const double scale =
       std::min(static_cast<double>(dst.width()) / src.width(), static_cast<double>(dst.height()) / src.height());
   const Size size = {std::clamp(static_cast<int>(std::lround(src.width() * scale)), 1, dst.width()),
                      std::clamp(static_cast<int>(std::lround(src.height() * scale)), 1, dst.height())};
   cv::Mat into = mat_of(dst.crop((dst.height() - size.height) / 2, (dst.width() - size.width) / 2, size));
-  cv::resize(mat_of(src), into, into.size(), 0, 0, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+  cv::resize(mat_of(src), into, into.size(), 0, 0, scale < kCoarse ? cv::INTER_AREA : cv::INTER_LINEAR);
 }
 
 void broken_line(cv::Mat& rgb, cv::Point2d a, cv::Point2d b, const cv::Scalar& color, int thickness, double dash_px) {

@@ -26,8 +26,8 @@ av::Coder open_encoder(AVCodecID id, Size size, AVRational rate) {
   encoder->thread_count = 1;
   encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER | AV_CODEC_FLAG_BITEXACT;
   if (id == AV_CODEC_ID_H264) {
-    av_opt_set(encoder->priv_data, "preset", "veryfast", 0);
-    av_opt_set(encoder->priv_data, "crf", "19", 0);
+    av_opt_set(encoder->priv_data, "preset", "superfast", 0);
+    av_opt_set(encoder->priv_data, "crf", "23", 0);
   } else {
     encoder->flags |= AV_CODEC_FLAG_QSCALE;
     encoder->global_quality = 3 * FF_QP2LAMBDA;
