@@ -10,17 +10,22 @@ inline std::atomic<long> allocations{0};
 
 inline void* counted(std::size_t bytes, std::size_t align) {
   allocations.fetch_add(1, std::memory_order_relaxed);
-  void* p = align > alignof(std::max_align_t) ? std::aligned_alloc(align, (bytes + align - 1) / align * align) : std::malloc(bytes);
+  void* p =
+      align > alignof(std::max_align_t) ? std::aligned_alloc(align, (bytes + align - 1) / align * align) : std::malloc(bytes);
   if (p == nullptr) throw std::bad_alloc();
   return p;
 }
 }  // namespace duo::test
 
-void* operator new(std::size_t bytes) { return duo::test::counted(bytes, 0); }
-void* operator new[](std::size_t bytes) { return duo::test::counted(bytes, 0); }
-void* operator new(std::size_t bytes, std::align_val_t align) { return duo::test::counted(bytes, static_cast<std::size_t>(align)); }
-void* operator new[](std::size_t bytes, std::align_val_t align) { return duo::test::counted(bytes, static_cast<std::size_t>(align)); }
 // Not inlined: the compiler would see free() on what an operator new returned, and warn.
+[[gnu::noinline]] void* operator new(std::size_t bytes) { return duo::test::counted(bytes, 0); }
+[[gnu::noinline]] void* operator new[](std::size_t bytes) { return duo::test::counted(bytes, 0); }
+[[gnu::noinline]] void* operator new(std::size_t bytes, std::align_val_t align) {
+  return duo::test::counted(bytes, static_cast<std::size_t>(align));
+}
+[[gnu::noinline]] void* operator new[](std::size_t bytes, std::align_val_t align) {
+  return duo::test::counted(bytes, static_cast<std::size_t>(align));
+}
 [[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete[](void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
