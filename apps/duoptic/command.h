@@ -30,7 +30,9 @@ struct Command {
 };
 
 Command add_depth(CLI::App& app);
+Command add_track(CLI::App& app);
 Command add_eval(CLI::App& app);
+Command add_eval_clip(CLI::App& eval);
 Command add_bench(CLI::App& app);
 Command add_demo(CLI::App& app);
 Command add_version(CLI::App& app);

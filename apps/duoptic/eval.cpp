@@ -1,4 +1,5 @@
-// duoptic eval middlebury: our accuracy on scenes with known truth, beside OpenCV's matchers run in the same call.
+// duoptic eval: eval clip has its own file; here eval middlebury, our accuracy on scenes with known truth, beside OpenCV's
+// matchers run in the same call.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -213,7 +214,8 @@ Command add_eval(CLI::App& app) {
   middlebury->add_flag("--json", options->json, "Print the scores as JSON");
   middlebury->add_option("-o,--output", options->output, "Folder for pictures of the errors")->type_name("DIR");
   middlebury->footer(kFooter);
-  return {sub, [options] { return run(*options); }};
+  const Command clip = add_eval_clip(*sub);
+  return {sub, [options, clip] { return clip.app->parsed() ? clip.run() : run(*options); }};
 }
 
 }  // namespace duo::app

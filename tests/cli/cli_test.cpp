@@ -225,7 +225,7 @@ TEST_F(Cli, ErrorsInJsonToo) {
 }
 
 TEST_F(Cli, HelpHasExamples) {
-  for (const char* sub : {"depth", "eval middlebury", "bench", "demo", "version"}) {
+  for (const char* sub : {"depth", "track", "eval middlebury", "eval clip", "bench", "demo", "version"}) {
     const Ended ended = run(std::string(sub) + " --help");
     EXPECT_EQ(ended.exit, 0) << sub;
     EXPECT_NE(ended.out.find("Example"), std::string::npos) << sub;

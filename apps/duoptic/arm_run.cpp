@@ -1,0 +1,108 @@
+#include "arm_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "timing.h"
+
+namespace duo::app {
+namespace {
+
+/// From the first two pictures of the file; a single picture counts as one of 30 a second.
+Result<double> frame_interval_s(const std::string& path) {
+  constexpr double kUsual_s = 1.0 / 30;
+  DUO_TRY_ASSIGN(const auto source, open_source(path));
+  if (source->still()) return kUsual_s;
+  TimeNs t_ns[2] = {};
+  Picture picture;
+  for (TimeNs& t : t_ns) {
+    DUO_TRY_ASSIGN(const Next next, source->next(picture));
+    if (next != Next::kPicture) return kUsual_s;
+    t = picture.t_ns;
+  }
+  const double interval_s = static_cast<double>(t_ns[1] - t_ns[0]) * 1e-9;
+  return interval_s > 0 ? interval_s : kUsual_s;
+}
+
+int disparity_at(double z_m, const Rig& rig) {
+  const double d_px = rig.left.fx_px * rig.baseline_m() / z_m;
+  return std::clamp((static_cast<int>(d_px) / 16 + 1) * 16, 16, Engine::kMaxDisparity);
+}
+
+}  // namespace
+
+void ArmOptions::add_to(CLI::App& app) {
+  engine.add_to(app);
+  app.add_option("--max-disparity", max_disparity,
+                 fmt::format("Searches 0 .. N-1 px; without it, as far as {} m needs", ArmRun::kNearest_m))
+      ->type_name("N")
+      ->check(CLI::Range(1, Engine::kMaxDisparity));
+  app.add_option("--tracker-preset", tracker_preset, "thesis: three blobs as in 2010; default: what survives hiding")
+      ->check(CLI::Validator(
+          [](std::string& name) {
+            const auto tracker = make_tracker("arm", name);
+            return tracker ? std::string() : tracker.error().what;
+          },
+          "default|thesis"))
+      ->capture_default_str();
+}
+
+Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, const Rig& rig, const ArmOptions& options) {
+  ArmRun run;
+  DUO_TRY_ASSIGN(run.pairs_, open_pairs(left, right));
+  DUO_TRY_ASSIGN(run.engine_, make_engine(options.engine.engine, options.engine.threads));
+  Setup setup = options.engine.setup();
+  setup.size = run.pairs_->size();
+  setup.rig = rig;
+  setup.max_disparity = options.max_disparity > 0 ? options.max_disparity : disparity_at(kNearest_m, rig);
+  setup.wants = {.color = true, .depth = false};
+  DUO_TRY(run.engine_->prepare(setup));
+  DUO_TRY_ASSIGN(run.tracker_, make_tracker("arm", options.tracker_preset));
+  DUO_TRY_ASSIGN(const double frame_s, frame_interval_s(left));
+  DUO_TRY(run.tracker_->prepare({rig, *run.engine_->rectified(), frame_s}));
+
+  run.recording_.sources = {left};
+  if (!right.empty()) run.recording_.sources.push_back(right);
+  run.recording_.engine = run.engine_->name();
+  run.recording_.matcher = options.engine.matcher;
+  run.recording_.matcher_preset = options.engine.preset;
+  run.recording_.tracker = run.tracker_->name();
+  run.recording_.tracker_preset = options.tracker_preset;
+  run.recording_.rectified = *run.engine_->rectified();
+  run.recording_.size = setup.size;
+  run.recording_.frame_s = frame_s;
+  return run;
+}
+
+Result<Next> ArmRun::read() {
+  DUO_TRY_ASSIGN(const Next next, pairs_->next(pair_));
+  if (next == Next::kPicture && pair_.sequence == 0) start_ns_ = pair_.left.t_ns;
+  return next;
+}
+
+const Frame& ArmRun::to_frame() {
+  times_.engine_ms = timed([&] {
+                       engine_->submit(pair_);
+                       frame_ = &engine_->collect();
+                     }).wall_ms;
+  return *frame_;
+}
+
+const std::vector<ArmPose>& ArmRun::track() {
+  const std::vector<ArmPose>* arms = nullptr;
+  times_.tracker_ms = timed([&] { arms = &tracker_->track(*frame_); }).wall_ms;
+  return *arms;
+}
+
+TrackedFrame ArmRun::tracked(const std::vector<ArmPose>& arms) const {
+  return {static_cast<std::int64_t>(pair_.sequence),
+          static_cast<double>(pair_.left.t_ns - start_ns_) * 1e-9,
+          pair_.left,
+          *frame_,
+          arms,
+          {}};
+}
+
+}  // namespace duo::app

@@ -1,0 +1,184 @@
+// duoptic track: two videos and three clicks in, the arm in 3D out.
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "arm_run.h"
+#include "progress.h"
+#include "timing.h"
+
+namespace duo::app {
+namespace {
+
+constexpr char kFooter[] =
+    "Clicks are pixels of the raw left picture at --at-frame; tracking starts there. Prints JSON lines: a header, then a line "
+    "a\n"
+    "frame with each joint's place in metres (rig frame: x right, y down, z forward), its place in the raw left picture, its\n"
+    "state (seen, inferred = hidden but known within sigma, lost) and one standard deviation. Two runs give the same bytes.\n\n"
+    "Examples:\n"
+    "  duoptic track left.avi right.avi --rig rig.json --select hand=451,360 --select elbow=478,285 --select shoulder=446,201\n"
+    "  duoptic track left.avi right.avi --rig rig.json --at-frame 40 --select hand=.. --select elbow=.. --select shoulder=.. "
+    "\\\n"
+    "      --select2 hand=.. --select2 elbow=.. --select2 shoulder=.. -o arms.jsonl --video arms.mp4";
+
+struct Options {
+  std::string left, right, rig, output, video;
+  std::vector<std::string> select, select2;
+  std::int64_t at_frame = 0;
+  bool stats = false, quiet = false;
+  ArmOptions arm;
+};
+
+using Click = ArmSelection::Click;
+
+/// "hand=451,360" as the joint's index and where it is.
+std::pair<std::size_t, Click> parse_click(const char* option, const std::string& text) {
+  const std::string_view all = text;
+  const std::size_t equals = std::min(all.find('='), all.size()), comma = std::min(all.find(',', equals), all.size());
+  const auto number = [](std::string_view part, double& out) {
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), out);
+    return error == std::errc() && end == part.data() + part.size() && std::isfinite(out);
+  };
+  Click click;
+  if (comma == all.size() || !number(all.substr(equals + 1, comma - equals - 1), click.x_px) ||
+      !number(all.substr(comma + 1), click.y_px))
+    throw CLI::ValidationError(option, fmt::format("'{}' is not JOINT=X,Y with two numbers", text));
+  for (std::size_t j = 0; j < kArmJoints; ++j)
+    if (all.substr(0, equals) == kJointNames[j]) return {j, click};
+  throw CLI::ValidationError(option,
+                             fmt::format("no joint '{}'; there are: {}", all.substr(0, equals), fmt::join(kJointNames, ", ")));
+}
+
+ArmSelection parse_selection(const char* option, const std::vector<std::string>& texts) {
+  std::array<std::optional<Click>, kArmJoints> found;
+  for (const std::string& text : texts) {
+    const auto [joint, click] = parse_click(option, text);
+    if (found[joint]) throw CLI::ValidationError(option, fmt::format("{} is given twice", kJointNames[joint]));
+    found[joint] = click;
+  }
+  ArmSelection selection;
+  for (std::size_t j = 0; j < kArmJoints; ++j) {
+    if (!found[j])
+      throw CLI::ValidationError(
+          option, fmt::format("{} is missing; give {}=X,Y of each: {}", kJointNames[j], option, fmt::join(kJointNames, ", ")));
+    selection.clicks[j] = *found[j];
+  }
+  return selection;
+}
+
+std::vector<ArmSelection> selections(const Options& options) {
+  std::vector<ArmSelection> arms = {parse_selection("--select", options.select)};
+  if (!options.select2.empty()) arms.push_back(parse_selection("--select2", options.select2));
+  return arms;
+}
+
+/// Reads on to the pair with this number.
+Result<void> go_to(ArmRun& run, std::int64_t number, const std::string& left) {
+  for (std::int64_t read = 0; read <= number; ++read) {
+    DUO_TRY_ASSIGN(const Next next, run.read());
+    if (next != Next::kPicture)
+      return Error{ErrorCode::kBadInput, fmt::format("cannot select at frame {}: {} gives {} pair{}, numbered from 0", number,
+                                                     left, read, read == 1 ? "" : "s")};
+  }
+  return {};
+}
+
+using Sinks = std::vector<std::unique_ptr<Sink>>;
+
+Result<Sinks> make_sinks(const Options& options, const Recording& recording, const CLI::App& app) {
+  Sinks sinks;
+  if (!options.video.empty()) {
+    std::string note;
+    DUO_TRY_ASSIGN(auto video, make_panel_video(options.video, recording, note));
+    if (!note.empty()) say(app, "warning: " + note);
+    sinks.push_back(std::move(video));
+  }
+  DUO_TRY_ASSIGN(auto lines, make_json_lines(options.output, recording));
+  sinks.push_back(std::move(lines));
+  return sinks;
+}
+
+struct Summary {
+  std::vector<double> engine_ms, tracker_ms;
+  Next end = Next::kEnd;
+};
+
+/// Tracks from the pair that was read last to the end of the files.
+Result<Summary> track_all(ArmRun& run, const std::vector<ArmSelection>& arms, const Options& options, const CLI::App& app) {
+  run.to_frame();
+  DUO_TRY(run.select(arms));
+  DUO_TRY_ASSIGN(const Sinks sinks, make_sinks(options, run.recording(), app));
+  Summary summary;
+  Progress progress(app, run.pairs().count(), options.quiet);
+  while (true) {
+    TrackedFrame frame = run.tracked(run.track());
+    if (options.stats) frame.times = run.times();
+    for (const auto& sink : sinks) DUO_TRY(sink->write(frame));
+    summary.engine_ms.push_back(run.times().engine_ms);
+    summary.tracker_ms.push_back(run.times().tracker_ms);
+    progress.frame(frame.number + 1);
+    DUO_TRY_ASSIGN(summary.end, run.read());
+    if (summary.end != Next::kPicture) break;
+    run.to_frame();
+  }
+  for (const auto& sink : sinks) DUO_TRY(sink->finish());
+  return summary;
+}
+
+std::string text_of(const Summary& summary, double seconds, const ArmRun& run, const Options& options) {
+  const std::size_t frames = summary.engine_ms.size();
+  return fmt::format(
+      "{} frame{} of {}x{} in {:.1f} s = {:.1f} frames/s; engine {:.1f} ms, tracker {:.1f} ms ({}, {}, {} thread{})", frames,
+      frames == 1 ? "" : "s", run.recording().size.width, run.recording().size.height, seconds,
+      static_cast<double>(frames) / seconds, median(summary.engine_ms), median(summary.tracker_ms), run.recording().engine,
+      run.recording().tracker_preset, options.arm.engine.threads, options.arm.engine.threads == 1 ? "" : "s");
+}
+
+Result<Exit> run(const Options& options, const CLI::App& app) {
+  const std::vector<ArmSelection> arms = selections(options);
+  DUO_TRY_ASSIGN(const Rig rig, load_rig(options.rig));
+  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(options.left, options.right, rig, options.arm));
+  DUO_TRY(go_to(run, options.at_frame, options.left));
+  Result<Summary> summary = Summary{};
+  const Times times = timed([&] { summary = track_all(run, arms, options, app); });
+  if (!summary) return summary.error();
+  // stdout belongs to the lines when they go there.
+  if (options.stats)
+    say(app, text_of(*summary, times.wall_ms / 1000, run, options));
+  else if (!options.quiet && !options.output.empty())
+    fmt::print("{}\n", text_of(*summary, times.wall_ms / 1000, run, options));
+  if (const std::string warning = run.pairs().warning(); !warning.empty()) say(app, "warning: " + warning);
+  return summary->end == Next::kCut ? Exit::kCut : Exit::kOk;
+}
+
+}  // namespace
+
+Command add_track(CLI::App& app) {
+  CLI::App* sub = app.add_subcommand("track", "An arm in 3D through two videos, from a click on hand, elbow and shoulder");
+  const auto options = std::make_shared<Options>();
+  sub->add_option("LEFT", options->left, "Video of the left camera, or of both side by side")->required();
+  sub->add_option("RIGHT", options->right, "Video of the right camera");
+  sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON)")->required();
+  sub->add_option("--select", options->select, "Where hand, elbow and shoulder are; once for each")
+      ->type_name("JOINT=X,Y")
+      ->required();
+  sub->add_option("--select2", options->select2, "The same of a second arm, which the lines call joints2")
+      ->type_name("JOINT=X,Y");
+  sub->add_option("--at-frame", options->at_frame, "The frame of the clicks; those before it are skipped")
+      ->type_name("N")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
+      ->capture_default_str();
+  sub->add_option("-o,--output", options->output, "File for the JSON lines instead of stdout")->type_name("FILE");
+  sub->add_option("--video", options->video, "MP4 with the four panels: joints, depth, arm region, hue")->type_name("FILE");
+  options->arm.add_to(*sub);
+  sub->add_flag("--stats", options->stats, "Add times to each line and print a summary of them on stderr");
+  sub->add_flag("--quiet", options->quiet, "No progress and no summary");
+  sub->footer(kFooter);
+  return {sub, [options, sub] { return run(*options, *sub); }};
+}
+
+}  // namespace duo::app

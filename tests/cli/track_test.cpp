@@ -1,0 +1,246 @@
+// `duoptic track` as its users meet it: what it writes on a clip, and what it says of bad input.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "duoptic/rig.h"
+#include "duoptic/source.h"
+#include "duoptic/synthetic.h"
+#include "sinks/video_writer.h"
+#include "tests/write_media.h"
+
+namespace duo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::put;
+
+constexpr int kUsage = 2, kCut = 3, kInput = 4, kOutput = 5;
+constexpr int kPairs = 6;
+constexpr char kSelect[] = " --select hand=160,100 --select elbow=160,77 --select shoulder=160,54 ";
+
+struct Ended {
+  int exit = -1;
+  std::string out, err;
+};
+
+/// A short clip of the synthetic room: a wall to see, on which three clicks lie as far apart as an arm's. Rendered once for all
+/// tests.
+class Track : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<test::TempFolder>();
+    const SyntheticSetup setup{.size = {320, 240}};
+    auto left = VideoWriter::open(at("left.mp4"), setup.size, 1.0 / 30);
+    auto right = VideoWriter::open(at("right.mp4"), setup.size, 1.0 / 30),
+         short_right = VideoWriter::open(at("short.mp4"), setup.size, 1.0 / 30),
+         blank = VideoWriter::open(at("blank.mp4"), setup.size, 1.0 / 30);
+    ASSERT_TRUE(left && right && short_right && blank);
+    const SyntheticPair raw = render_synthetic(setup, 2);
+    Image<Rgb8> gray(setup.size);
+    for (int y = 0; y < gray.height(); ++y) std::fill_n(gray.row(y), gray.width(), Rgb8{128, 128, 128});
+    for (int i = 0; i < kPairs; ++i) {
+      ASSERT_TRUE(left->write(raw.pair.left.pixels) && right->write(raw.pair.right.pixels) && blank->write(gray));
+      ASSERT_TRUE(i >= kPairs - 2 || short_right->write(raw.pair.right.pixels));
+    }
+    ASSERT_TRUE(left->finish() && right->finish() && short_right->finish() && blank->finish());
+    ASSERT_TRUE(save_rig(raw.rig, at("rig.json")));
+    ASSERT_TRUE(save_rig(synthetic_rig({.size = {640, 480}}), at("other.json")));
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static fs::path at(const std::string& name) { return *folder_ / name; }
+
+  static Ended run(const std::string& arguments, const std::string& before = "") {
+    const std::string command =
+        "cd '" + at("").string() + "' && " + before + " '" DUO_TOOL "' " + arguments + " >stdout.txt 2>stderr.txt";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), bytes_of(at("stdout.txt")),
+            bytes_of(at("stderr.txt"))};
+  }
+
+  /// One line, its exit code, its words, nothing on stdout and no file.
+  static void expect_failure(const std::string& arguments, int exit, const std::string& words, const std::string& before = "") {
+    SCOPED_TRACE(arguments);
+    const Ended ended = run(arguments + " -o out.jsonl --video out.mp4", before);
+    EXPECT_EQ(ended.exit, exit) << ended.err;
+    EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+    EXPECT_EQ(ended.err.rfind("duoptic track: ", 0), 0u) << ended.err;
+    EXPECT_NE(ended.err.find(words), std::string::npos) << ended.err;
+    EXPECT_EQ(ended.out, "");
+    EXPECT_FALSE(fs::exists(at("out.jsonl")) || fs::exists(at("out.mp4")));
+    for (const auto& file : fs::directory_iterator(at(""))) EXPECT_EQ(file.path().extension() == ".partial", false);
+  }
+
+  static std::vector<nlohmann::json> lines(const std::string& text) {
+    std::vector<nlohmann::json> out;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) {
+      out.push_back(nlohmann::json::parse(line, nullptr, false));
+      EXPECT_TRUE(out.back().is_object()) << line;
+    }
+    return out;
+  }
+
+ private:
+  inline static std::unique_ptr<test::TempFolder> folder_;
+};
+
+TEST_F(Track, HeaderThenALineAFrame) {
+  const Ended ended =
+      run("track left.mp4 right.mp4 --rig rig.json --at-frame 2" + std::string(kSelect) + "-o a.jsonl --video a.mp4");
+  ASSERT_EQ(ended.exit, 0) << ended.err;
+  EXPECT_EQ(ended.err, "");
+  const auto all = lines(bytes_of(at("a.jsonl")));
+  ASSERT_EQ(all.size(), 1u + kPairs - 2);
+  EXPECT_EQ(all[0]["type"], "header");
+  EXPECT_EQ(all[0]["sources"], (nlohmann::json{"left.mp4", "right.mp4"}));
+  EXPECT_EQ(all[0]["rig_from_left"].size(), 9u);
+  EXPECT_NEAR(all[0]["frame_s"], 1.0 / 30, 1e-6);
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    EXPECT_EQ(all[i]["frame"], i + 1);  // the first two are skipped
+    EXPECT_NEAR(all[i]["t_s"], static_cast<double>(i + 1) / 30, 1e-3);
+    for (const char* joint : {"hand", "elbow", "shoulder"}) {
+      const auto& j = all[i]["joints"][joint];
+      EXPECT_EQ(j["p_in_rig_m"].is_null(), j["state"] == "lost") << j;
+      EXPECT_TRUE(j.contains("uv_left_px") && j.contains("confidence") && j.contains("sigma_m")) << j;
+    }
+    EXPECT_FALSE(all[i].contains("engine_ms"));
+  }
+  const auto video = open_source(at("a.mp4"));
+  ASSERT_TRUE(video) << video.error().what;
+  EXPECT_EQ((*video)->count(), kPairs - 2);
+}
+
+TEST_F(Track, TheSameBytesWhateverTheThreads) {
+  const std::string arguments = "track left.mp4 right.mp4 --rig rig.json" + std::string(kSelect);
+  const Ended one = run(arguments + "--threads 1"), two = run(arguments + "--threads 2"),
+              three = run(arguments + "--threads 3");
+  ASSERT_EQ(one.exit, 0) << one.err;
+  EXPECT_EQ(lines(one.out).size(), 1u + kPairs);
+  EXPECT_EQ(one.out, two.out);
+  EXPECT_EQ(one.out, three.out);
+  EXPECT_EQ(run(arguments + "-o b.jsonl --quiet").out, "");
+  EXPECT_EQ(bytes_of(at("b.jsonl")), one.out);
+}
+
+TEST_F(Track, TimesOnlyWhenAsked) {
+  const Ended ended = run("track left.mp4 right.mp4 --rig rig.json --stats" + std::string(kSelect));
+  ASSERT_EQ(ended.exit, 0) << ended.err;
+  EXPECT_GT(lines(ended.out)[1]["engine_ms"], 0.0);
+  EXPECT_NE(ended.err.find("frames/s"), std::string::npos) << ended.err;
+}
+
+TEST_F(Track, CutVideoKeepsItsWholeFrames) {
+  const std::string whole = bytes_of(at("left.mp4"));
+  put(at("cut.mp4"), std::string_view(whole).substr(0, whole.size() - 20));
+  const Ended ended = run("track cut.mp4 right.mp4 --rig rig.json -o cut.jsonl" + std::string(kSelect));
+  EXPECT_EQ(ended.exit, kCut) << ended.err;
+  EXPECT_NE(ended.err.find("cut.mp4 is cut short"), std::string::npos) << ended.err;
+  const auto all = lines(bytes_of(at("cut.jsonl")));
+  EXPECT_GT(all.size(), 1u);
+  EXPECT_LT(all.size(), 1u + kPairs);
+}
+
+TEST_F(Track, ClipsOfDifferentLengthGiveAWarning) {
+  const Ended ended = run("track left.mp4 short.mp4 --rig rig.json -o short.jsonl" + std::string(kSelect));
+  EXPECT_EQ(ended.exit, 0) << ended.err;
+  EXPECT_NE(ended.err.find("warning: short.mp4 ends after 4 pictures"), std::string::npos) << ended.err;
+  EXPECT_EQ(lines(bytes_of(at("short.jsonl"))).size(), 5u);
+}
+
+TEST_F(Track, BadSelections) {
+  const std::string pair = "track left.mp4 right.mp4 --rig rig.json ";
+  const std::string rest = " --select elbow=160,77 --select shoulder=160,54";
+  expect_failure(pair, kUsage, "--select");
+  expect_failure(pair + "--select hand=160,100 --select elbow=160,77", kUsage, "shoulder is missing");
+  expect_failure(pair + "--select hand=1,1 --select hand=2,2" + rest, kUsage, "hand is given twice");
+  for (const char* bad :
+       {"hand", "hand=", "hand=5", "hand=5,", "hand=,5", "hand=a,b", "hand=nan,1", "hand=1e999,1", "hand=1,2,3", "="})
+    expect_failure(pair + "--select " + bad + rest, kUsage, "is not JOINT=X,Y");
+  expect_failure(pair + "--select foot=1,1" + rest, kUsage, "no joint 'foot'; there are: hand, elbow, shoulder");
+  expect_failure(pair + kSelect + "--select2 hand=5,5", kUsage, "elbow is missing");
+  for (const char* outside : {"hand=320,10", "hand=-1,10", "hand=10,240", "hand=1e9,-1e9"})
+    expect_failure(pair + "--select " + outside + rest, kInput, "outside");
+  expect_failure("track blank.mp4 blank.mp4 --rig rig.json" + std::string(kSelect), kInput, "depth");
+  expect_failure(pair + kSelect + "--at-frame 6", kInput, "cannot select at frame 6: left.mp4 gives 6 pairs");
+  expect_failure(pair + kSelect + "--at-frame -1", kUsage, "--at-frame");
+}
+
+TEST_F(Track, BadInputs) {
+  const std::string select = kSelect;
+  expect_failure("track left.mp4 right.mp4" + select, kUsage, "--rig");
+  expect_failure("track left.mp4 right.mp4 --rig none.json" + select, kInput, "none.json");
+  expect_failure("track left.mp4 right.mp4 --rig other.json" + select, kInput, "640x480");
+  expect_failure("track left.mp4 none.mp4 --rig rig.json" + select, kInput, "none.mp4");
+  expect_failure("track left.mp4 right.mp4 --rig rig.json --tracker-preset best" + select, kUsage, "best");
+}
+
+TEST_F(Track, BadOutputs) {
+  const std::string track = "track left.mp4 right.mp4 --rig rig.json" + std::string(kSelect);
+  const auto fails = [&](const std::string& output, const std::string& words) {
+    const Ended ended = run(track + output);
+    EXPECT_EQ(ended.exit, kOutput) << ended.err;
+    EXPECT_NE(ended.err.find(words), std::string::npos) << ended.err;
+  };
+  fails("-o none/a.jsonl", "make the folder first");
+  fails("--video none/a.mp4 -o never.jsonl", "make the folder first");
+  fails("-o .", "folder");
+  EXPECT_FALSE(fs::exists(at("never.jsonl")));
+  // A quota of 4 blocks of 512 bytes: neither file fits.
+  expect_failure(track, kOutput, "out.", "ulimit -f 4;");
+  EXPECT_EQ(run(track + ">/dev/full 2>stderr.txt; exit $?").exit, kOutput);
+}
+
+/// The clip of the room with a truth as if the three clicks were joints at 3 m.
+TEST_F(Track, EvalClipAgainstATruthFile) {
+  fs::create_directories(at("clip"));
+  for (const char* side : {"left", "right"})
+    fs::copy_file(at(std::string(side) + ".mp4"), at("clip") / (std::string(side) + ".avi"));
+  fs::copy_file(at("rig.json"), at("clip/calibration_truth.yml"));
+  const auto joint = [](double y_px, bool seen) {
+    return nlohmann::json{{"xyz", {0, 0, 3}}, {"uv_left", {160, y_px}}, {"vis_left", seen}, {"vis_right", true}};
+  };
+  nlohmann::json truth = {{"meta", {{"selected_arm", "left"}}}, {"frames", nlohmann::json::array()}};
+  for (int i = 0; i < kPairs; ++i)
+    truth["frames"].push_back(
+        {{"joints", {{"left_hand", joint(100, i > 0)}, {"left_elbow", joint(77, true)}, {"left_shoulder", joint(54, true)}}}});
+  put(at("clip/truth.json"), truth.dump());
+  const Ended ended = run("eval clip clip --json");
+  ASSERT_EQ(ended.exit, 0) << ended.err;
+  const auto report = nlohmann::json::parse(ended.out, nullptr, false);
+  ASSERT_TRUE(report.is_object()) << ended.out;
+  const auto& clip = report["clips"][0];
+  EXPECT_EQ(clip["clip"], "clip");
+  EXPECT_EQ(clip["first_frame"], 1);  // the hand is hidden in frame 0
+  EXPECT_EQ(clip["frames"], kPairs - 1);
+  EXPECT_TRUE(clip["depth"].is_null());
+  EXPECT_TRUE(clip["joints"]["hand"]["hidden_median_mm"].is_null());
+  EXPECT_GT(clip["joints"]["hand"]["median_mm"], 100.0);  // the wall is not where this truth has the hand
+
+  const auto fails = [&](const std::string& folder, const std::string& words) {
+    const Ended bad = run("eval clip " + folder);
+    EXPECT_EQ(bad.exit, kInput) << bad.err;
+    EXPECT_EQ(std::count(bad.err.begin(), bad.err.end(), '\n'), 1) << bad.err;
+    EXPECT_NE(bad.err.find(words), std::string::npos) << bad.err;
+  };
+  fails("nowhere", "nowhere");
+  truth["frames"].push_back(truth["frames"][0]);
+  put(at("clip/truth.json"), truth.dump());
+  fails("clip", "its videos end before frame 6 of 7");
+  truth["frames"][0]["joints"].erase("left_elbow");
+  put(at("clip/truth.json"), truth.dump());
+  fails("clip", "left_elbow");
+  put(at("clip/truth.json"), "{");
+  fails("clip", "truth.json");
+  fs::remove(at("clip/truth.json"));
+  fails("clip", "no truth.json");
+}
+
+}  // namespace
+}  // namespace duo
