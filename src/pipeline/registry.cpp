@@ -7,6 +7,7 @@
 #include "engines/engines.h"
 #include "matchers/pyramid/pyramid_params.h"
 #include "trackers/arm/arm_tracker.h"
+#include "trackers/arm/thesis_tracker.h"
 
 namespace duo {
 
@@ -42,7 +43,8 @@ Result<std::unique_ptr<Tracker>> make_tracker(std::string_view name, std::string
   if (name != "arm")
     return Error{ErrorCode::kBadInput, fmt::format("make the tracker: no tracker is called \"{}\"; choose one of: arm", name)};
   if (preset == "default") return make_arm_tracker();
-  return Error{ErrorCode::kBadInput, fmt::format("make the tracker: arm has no preset \"{}\"; choose one of: default", preset)};
+  if (preset == "thesis") return make_thesis_tracker();
+  return Error{ErrorCode::kBadInput, fmt::format("make the tracker: arm has no preset \"{}\"; choose one of: default, thesis", preset)};
 }
 
 }  // namespace duo

@@ -47,7 +47,7 @@ void Arm::learn_colors(const Grid& grid, bool arm_seen) {
   if (!torso_.seen()) return;
   const Rigid3 torso_from_rig = inverse(torso_.rig_from_torso());
   const auto cloth = histogram_of(grid, [&](int i) {
-    if (!front(i) || colors_(grid.color_bin[static_cast<std::size_t>(i)]) >= kNoSkin) return false;
+    if (!front(i) || colors_(grid.color_bin(i)) >= kNoSkin) return false;
     const Vec3 p = grid.point(i), local = torso_from_rig * p;
     return norm(local) < kTorsoM && local.y > 0 && norm(p - hand_.p) > kFromArmM &&
            norm(p - 0.5 * (hand_.p + elbow_.p)) > kFromArmM;
@@ -64,7 +64,7 @@ void Arm::follow_others(const Grid& grid) {
     for (int i = 0; i < grid.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
       mask_[k] =
-          silhouette_.front[k] && colors_(grid.color_bin[k]) > params_.least_skin && norm(grid.point(i) - other.p) < kSearchM;
+          silhouette_.front[k] && colors_(grid.color_bin(i)) > params_.least_skin && norm(grid.point(i) - other.p) < kSearchM;
     }
     double nearest_m = kStepM;
     const Region* found = nullptr;

@@ -55,7 +55,7 @@ TEST(Grid, CellHoldsMedianDisparityAndTrimmedColor) {
   const int cell = grid.at(10, 20);
   EXPECT_FLOAT_EQ(static_cast<float>(grid.z(cell)), 600 * 0.1F / 32);
   EXPECT_FLOAT_EQ(grid.color[static_cast<std::size_t>(cell)].r, 25);
-  EXPECT_EQ(grid.color_bin[static_cast<std::size_t>(cell)], 31);  // hue 0, saturation full
+  EXPECT_EQ(grid.color_bin(cell), 31U);  // hue 0, saturation full
   EXPECT_FALSE(grid.known(grid.at(11, 20)));
   EXPECT_EQ(grid.cell_of(grid.point(cell)), cell);
 }

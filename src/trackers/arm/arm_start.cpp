@@ -142,7 +142,7 @@ void Arm::learn_others(const Grid& grid, const std::vector<std::uint8_t>& person
   constexpr float kSkin = 1;
   constexpr double kLeastM2 = 0.003, kTouchM = 0.08, kFromArmM = 0.10;
   const Chain arm = chain();
-  for (std::size_t i = 0; i < mask_.size(); ++i) mask_[i] = person[i] && colors_(grid.color_bin[i]) > kSkin;
+  for (std::size_t i = 0; i < mask_.size(); ++i) mask_[i] = person[i] && colors_(grid.color_bin(static_cast<int>(i))) > kSkin;
   keep_majority(grid, mask_, scratch_, 6);
   for (const Region& r : skin_regions_.find(grid, mask_, params_.region_step_m)) {
     const auto touches = [&](int i) {

@@ -1,16 +1,15 @@
 #include "trackers/arm/arm_tracker.h"
 
-#include <fmt/format.h>
-
 #include <utility>
 
 #include "core/check.h"
 #include "trackers/arm/arm.h"
+#include "trackers/arm/raw_left.h"
 
 namespace duo {
 namespace {
 
-constexpr std::size_t kMostArms = 2;
+using arm::kMostArms;
 
 class ArmTracker final : public Tracker {
  public:
@@ -21,12 +20,10 @@ class ArmTracker final : public Tracker {
   void reset() override;
 
  private:
-  Result<std::array<Vec2, kArmJoints>> rectified(const ArmSelection& selection) const;
-  Keypoint keypoint(const arm::TrackedJoint& joint, const Keypoint& before) const;
   void publish();
 
-  TrackerSetup setup_;
-  std::optional<Lens> lens_;  // of the raw left camera; empty before prepare()
+  std::optional<arm::RawLeft> view_;  // empty before prepare()
+  double frame_s_ = 0;
   arm::Grid grid_;
   arm::GrayLevels gray_;
   std::vector<arm::Arm> arms_;
@@ -36,61 +33,24 @@ class ArmTracker final : public Tracker {
 };
 
 Result<void> ArmTracker::prepare(const TrackerSetup& setup) {
-  const Size size = setup.rectified.size;
-  if (size.width < 64 || size.height < 64 || !(setup.rectified.focal_px > 0) || !(setup.rectified.baseline_m > 0))
-    return Error{ErrorCode::kBadInput,
-                 fmt::format("prepare the arm tracker: rectified pictures of {}x{} without size or geometry; "
-                             "give it what the engine's rectified() returns",
-                             size.width, size.height)};
-  if (!(setup.frame_s > 0 && setup.frame_s < 1))
-    return Error{ErrorCode::kBadInput,
-                 fmt::format("prepare the arm tracker: {} s from frame to frame is not in 0 .. 1", setup.frame_s)};
+  DUO_TRY_ASSIGN(const auto view, arm::RawLeft::of(setup));
   reset();
-  setup_ = setup;
-  lens_.emplace(setup.rig.left);
+  view_.emplace(view);
+  frame_s_ = setup.frame_s;
   grid_ = arm::Grid(setup.rectified);
   gray_ = arm::GrayLevels(setup.rectified);
   return {};
 }
 
-/// The clicks on the rectified picture, in the order of Joint.
-Result<std::array<Vec2, kArmJoints>> ArmTracker::rectified(const ArmSelection& selection) const {
-  const Rectified& to = setup_.rectified;
-  std::array<Vec2, kArmJoints> out;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const Vec2 click = {selection.clicks[i].x_px, selection.clicks[i].y_px};
-    const Size size = lens_->camera().size;
-    const auto bad = [&](const char* why) {
-      return Error{ErrorCode::kBadInput,
-                   fmt::format("select the arm: the {} click ({:g}, {:g}) {} of {}x{}; click on the raw left picture",
-                               kJointNames[i], click.x, click.y, why, size.width, size.height)};
-    };
-    if (!lens_->covers(click, 0.5)) return bad("lies outside the picture");
-    const auto ray = lens_->ray_of(click);
-    const Vec3 turned = ray ? to.rig_from_left * *ray : Vec3{};
-    if (!(turned.z > 0)) return bad("is seen by no ray of the lens, in the picture");
-    out[i] = {to.cx_px + to.focal_px * turned.x / turned.z, to.cy_px + to.focal_px * turned.y / turned.z};
-    if (!(out[i].x >= 0 && out[i].y >= 0 && out[i].x <= to.size.width - 1 && out[i].y <= to.size.height - 1))
-      return bad("is not seen by both cameras, in the picture");
-  }
-  return out;
-}
-
 Result<void> ArmTracker::select(const Frame& frame, const std::vector<ArmSelection>& selections) {
-  DUO_CHECK(lens_.has_value());
-  if (selections.empty() || selections.size() > kMostArms)
-    return Error{ErrorCode::kBadInput,
-                 fmt::format("select the arm: {} arms were given; this tracker follows 1 or 2", selections.size())};
-  if (frame.color.empty() || frame.color.size() != setup_.rectified.size || frame.left.size() != setup_.rectified.size)
-    return Error{ErrorCode::kBadInput,
-                 "select the arm: the frame lacks the colour picture or has another size than prepared; set "
-                 "wants.color in the engine's setup"};
+  DUO_CHECK(view_.has_value());
+  DUO_TRY(view_->check(frame, selections.size()));
   grid_.build(frame);
   gray_.build(frame);
   std::vector<arm::Arm> arms;
   for (std::size_t n = 0; n < selections.size(); ++n) {
-    DUO_TRY_ASSIGN(const auto clicks, rectified(selections[n]));
-    arms.emplace_back(grid_, setup_.frame_s);
+    DUO_TRY_ASSIGN(const auto clicks, view_->rectified(selections[n]));
+    arms.emplace_back(grid_, frame_s_);
     DUO_TRY(arms.back().start({grid_, gray_}, clicks));
   }
   arms_ = std::move(arms);
@@ -130,18 +90,12 @@ void ArmTracker::reset() {
 
 void ArmTracker::publish() {
   for (std::size_t n = 0; n < arms_.size(); ++n)
-    for (const Joint joint : {Joint::kHand, Joint::kElbow, Joint::kShoulder})
-      poses_[n][joint] = keypoint(arms_[n].joint(joint), poses_[n][joint]);
-}
-
-/// A joint that the lens does not see keeps its last pixel.
-Keypoint ArmTracker::keypoint(const arm::TrackedJoint& joint, const Keypoint& before) const {
-  Keypoint out{joint.p, joint.sigma_m, joint.confidence, before.u_px, before.v_px, joint.state};
-  if (const auto pixel = lens_->pixel_of(transposed(setup_.rectified.rig_from_left) * joint.p)) {
-    out.u_px = pixel->x;
-    out.v_px = pixel->y;
-  }
-  return out;
+    for (const Joint which : {Joint::kHand, Joint::kElbow, Joint::kShoulder}) {
+      const arm::TrackedJoint& joint = arms_[n].joint(which);
+      Keypoint& out = poses_[n][which];
+      out = {joint.p, joint.sigma_m, joint.confidence, out.u_px, out.v_px, joint.state};
+      view_->set_pixel(out);
+    }
 }
 
 }  // namespace

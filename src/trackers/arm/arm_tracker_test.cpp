@@ -71,7 +71,7 @@ TEST_F(BadInput, Setup) {
 TEST(MakeTracker, NamesAndPresets) {
   EXPECT_TRUE(make_tracker("arm", "default"));
   EXPECT_SAYS(make_tracker("leg", "default").error().what, "choose one of: arm");
-  EXPECT_SAYS(make_tracker("arm", "best").error().what, "choose one of: default");
+  EXPECT_SAYS(make_tracker("arm", "best").error().what, "choose one of: default, thesis");
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ std::optional<Histogram> histogram_of(const Grid& grid, Use&& use) {
   int n = 0;
   for (int i = 0; i < grid.size(); ++i)
     if (use(i)) {
-      ++counts[grid.color_bin[static_cast<std::size_t>(i)]];
+      ++counts[grid.color_bin(i)];
       ++n;
     }
   if (n < 12) return {};
@@ -37,7 +37,7 @@ class ColorTable {
   void start(const Histogram& target, const Histogram& surroundings);
   void learn_target(const Histogram& seen, float rate);
   void learn_surroundings(const Histogram& seen, float rate);
-  float operator()(std::uint16_t bin) const { return ratio_[bin]; }
+  float operator()(std::size_t bin) const { return ratio_[bin]; }
 
  private:
   void update();

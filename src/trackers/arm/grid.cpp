@@ -28,7 +28,7 @@ struct Trimmed {
 };
 
 std::uint16_t upper_median(std::uint16_t* values, int n) {
-  constexpr int kFew = 16;
+  constexpr int kFew = 9;
   if (n > kFew) {
     std::nth_element(values, values + n / 2, values + n);
     return values[n / 2];
@@ -36,24 +36,6 @@ std::uint16_t upper_median(std::uint16_t* values, int n) {
   for (int i = 1; i < n; ++i)  // nearly sorted most of the time: a cell is a piece of one surface
     for (int j = i; j > 0 && values[j] < values[j - 1]; --j) std::swap(values[j], values[j - 1]);
   return values[n / 2];
-}
-
-std::uint16_t bin_of(Rgb c) {
-  const float most = std::max({c.r, c.g, c.b}), least = std::min({c.r, c.g, c.b}), spread = most - least;
-  float hue = 0;  // sixths of a circle
-  if (spread > 0) {
-    if (most == c.r)
-      hue = (c.g - c.b) / spread;
-    else if (most == c.g)
-      hue = 2 + (c.b - c.r) / spread;
-    else
-      hue = 4 + (c.r - c.g) / spread;
-    if (hue < 0) hue += 6;
-  }
-  const float saturation = most > 0 ? spread / most : 0;
-  const int hue_bin = std::min(31, static_cast<int>(hue * (32.0F / 6))),
-            saturation_bin = std::min(31, static_cast<int>(saturation * 32));
-  return static_cast<std::uint16_t>(hue_bin * 32 + saturation_bin);
 }
 
 }  // namespace
@@ -66,7 +48,6 @@ Grid::Grid(const Rectified& rectified)
   const auto n = static_cast<std::size_t>(size());
   z_m.resize(n);
   color.resize(n);
-  color_bin.resize(n);
   inside.resize(n);
   for (int i = 0; i < size(); ++i) {
     ray_x_.push_back(static_cast<float>((i % width - camera.cx_px) / camera.focal_px));
@@ -119,9 +100,28 @@ void Grid::build_row(const Frame& frame, int y) {
     const auto i = static_cast<std::size_t>(at(x, y));
     inside[i] = covered;
     color[i] = {r.mean(pixels), g.mean(pixels), b.mean(pixels)};
-    color_bin[i] = bin_of(color[i]);
     z_m[i] = known == 0 || known * 4 < pixels ? 0 : z_of_q4 / static_cast<float>(upper_median(d_q4.data(), known));
   }
+}
+
+// Hexcone model (Smith, 1978), as in the stage hsv.
+std::size_t Grid::color_bin(int i) const {
+  const Rgb c = color[static_cast<std::size_t>(i)];
+  const float most = std::max({c.r, c.g, c.b}), least = std::min({c.r, c.g, c.b}), spread = most - least;
+  float hue = 0;  // sixths of a circle
+  if (spread > 0) {
+    if (most == c.r)
+      hue = (c.g - c.b) / spread;
+    else if (most == c.g)
+      hue = 2 + (c.b - c.r) / spread;
+    else
+      hue = 4 + (c.r - c.g) / spread;
+    if (hue < 0) hue += 6;
+  }
+  const float saturation = most > 0 ? spread / most : 0;
+  const int hue_bin = std::min(31, static_cast<int>(hue * (32.0F / 6))),
+            saturation_bin = std::min(31, static_cast<int>(saturation * 32));
+  return static_cast<std::size_t>(hue_bin * 32 + saturation_bin);
 }
 
 int Grid::cell_of(Vec3 p) const {

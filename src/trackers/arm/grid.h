@@ -21,10 +21,9 @@ struct Grid {
 
   int width = 0, height = 0, step = 1;
   Pinhole camera;
-  std::vector<float> z_m;                // 0 = unknown
-  std::vector<Rgb> color;                // 0 .. 255
-  std::vector<std::uint16_t> color_bin;  // hue and saturation, 32 x 32
-  std::vector<std::uint8_t> inside;      // 1 where the raw picture covers all of the cell
+  std::vector<float> z_m;            // 0 = unknown
+  std::vector<Rgb> color;            // 0 .. 255
+  std::vector<std::uint8_t> inside;  // 1 where the raw picture covers all of the cell
 
   Grid() = default;
   explicit Grid(const Rectified& rectified);
@@ -40,6 +39,8 @@ struct Grid {
     const double z = z_m[k];
     return {ray_x_[k] * z, ray_y_[k] * z, z};
   }
+  /// Its hue and saturation as a bin of core/targets.h; worked out when asked for, as few cells are.
+  std::size_t color_bin(int i) const;
   /// Area that a cell covers on a surface seen head on.
   double area_m2(double z) const { return (z / camera.focal_px) * (z / camera.focal_px); }
   /// The cell that a point falls on; -1 = none.

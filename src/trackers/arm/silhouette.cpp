@@ -56,7 +56,7 @@ void Silhouette::find_skin(const SilhouetteInput& in, const Params& params) {
   clear(skin);
   for (int i = 0; i < in.grid.size(); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    if (!front[k] || in.colors(in.grid.color_bin[k]) < params.least_skin) continue;
+    if (!front[k] || in.colors(in.grid.color_bin(i)) < params.least_skin) continue;
     const Vec3 p = in.grid.point(i);
     if (norm(p - in.shoulder) > in.reach_m + kSlackM) continue;
     any_skin[k] = 1;

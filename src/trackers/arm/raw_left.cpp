@@ -1,0 +1,62 @@
+#include "trackers/arm/raw_left.h"
+
+#include <fmt/format.h>
+
+namespace duo::arm {
+namespace {
+
+Error refused(std::string what) { return {ErrorCode::kBadInput, std::move(what)}; }
+
+}  // namespace
+
+Result<RawLeft> RawLeft::of(const TrackerSetup& setup) {
+  const Rectified& r = setup.rectified;
+  if (r.size.width < 64 || r.size.height < 64 || !(r.focal_px > 0) || !(r.baseline_m > 0))
+    return refused(
+        fmt::format("prepare the arm tracker: rectified pictures of {}x{} are too small or without geometry; give it what "
+                    "the engine's rectified() returns",
+                    r.size.width, r.size.height));
+  if (!(setup.frame_s > 0 && setup.frame_s < 1))
+    return refused(fmt::format("prepare the arm tracker: {} s from frame to frame is not between 0 and 1", setup.frame_s));
+  return RawLeft(setup.rig.left, r);
+}
+
+Result<std::array<Vec2, kArmJoints>> RawLeft::rectified(const ArmSelection& selection) const {
+  std::array<Vec2, kArmJoints> out;
+  const Size size = lens_.camera().size;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Vec2 click = {selection.clicks[i].x_px, selection.clicks[i].y_px};
+    const auto bad = [&](const char* why) {
+      return refused(fmt::format("select the arm: the {} click ({:g}, {:g}) {} of {}x{}; click on the raw left picture",
+                                 kJointNames[i], click.x, click.y, why, size.width, size.height));
+    };
+    if (!lens_.covers(click, 0.5)) return bad("lies outside the picture");
+    const auto ray = lens_.ray_of(click);
+    const Vec3 turned = ray ? geometry_.rig_from_left * *ray : Vec3{};
+    if (!(turned.z > 0)) return bad("is seen by no ray of the lens, in the picture");
+    out[i] = {geometry_.cx_px + geometry_.focal_px * turned.x / turned.z,
+              geometry_.cy_px + geometry_.focal_px * turned.y / turned.z};
+    if (!(out[i].x >= 0 && out[i].y >= 0 && out[i].x <= geometry_.size.width - 1 && out[i].y <= geometry_.size.height - 1))
+      return bad("is not seen by both cameras, in the picture");
+  }
+  return out;
+}
+
+void RawLeft::set_pixel(Keypoint& joint) const {
+  const auto pixel = lens_.pixel_of(transposed(geometry_.rig_from_left) * joint.p_in_rig_m);
+  if (!pixel) return;
+  joint.u_px = pixel->x;
+  joint.v_px = pixel->y;
+}
+
+Result<void> RawLeft::check(const Frame& frame, std::size_t arms) const {
+  if (arms < 1 || arms > kMostArms)
+    return refused(fmt::format("select the arm: {} arms were given; this tracker follows 1 or 2", arms));
+  if (frame.color.size() != geometry_.size || frame.left.size() != geometry_.size)
+    return refused(
+        "select the arm: the frame lacks the colour picture or has another size than prepared; set wants.color in the "
+        "engine's setup");
+  return {};
+}
+
+}  // namespace duo::arm
