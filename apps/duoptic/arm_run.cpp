@@ -51,10 +51,10 @@ void ArmOptions::add_to(CLI::App& app) {
 
 Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, const Rig& rig, const ArmOptions& options) {
   ArmRun run;
-  DUO_TRY_ASSIGN(run.pairs_, open_pairs(left, right));
+  DUO_TRY_ASSIGN(auto pairs, open_pairs(left, right));
   DUO_TRY_ASSIGN(run.engine_, make_engine(options.engine.engine, options.engine.threads));
   Setup setup = options.engine.setup();
-  setup.size = run.pairs_->size();
+  setup.size = pairs->size();
   setup.rig = rig;
   setup.max_disparity = options.max_disparity > 0 ? options.max_disparity : disparity_at(kNearest_m, rig);
   setup.wants = {.color = true, .depth = false};
@@ -62,6 +62,8 @@ Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, c
   DUO_TRY_ASSIGN(run.tracker_, make_tracker("arm", options.tracker_preset));
   DUO_TRY_ASSIGN(const double frame_s, frame_interval_s(left));
   DUO_TRY(run.tracker_->prepare({rig, *run.engine_->rectified(), frame_s}));
+
+  run.pairs_ = std::make_unique<ReadAhead>(std::move(pairs));
 
   run.recording_.sources = {left};
   if (!right.empty()) run.recording_.sources.push_back(right);

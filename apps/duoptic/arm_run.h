@@ -9,6 +9,7 @@
 #include "duoptic/sink.h"
 #include "duoptic/source.h"
 #include "duoptic/tracker.h"
+#include "read_ahead.h"
 
 namespace duo::app {
 
@@ -34,7 +35,7 @@ class ArmRun {
   Result<void> select(const std::vector<ArmSelection>& arms) { return tracker_->select(*frame_, arms); }
   const std::vector<ArmPose>& track();
 
-  const PairSource& pairs() const { return *pairs_; }
+  const ReadAhead& pairs() const { return *pairs_; }
   const Recording& recording() const { return recording_; }
   /// The last pair and its frame, as sinks take them.
   TrackedFrame tracked(const std::vector<ArmPose>& arms) const;
@@ -42,7 +43,7 @@ class ArmRun {
 
  private:
   ArmRun() = default;
-  std::unique_ptr<PairSource> pairs_;
+  std::unique_ptr<ReadAhead> pairs_;
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<Tracker> tracker_;
   Recording recording_;
