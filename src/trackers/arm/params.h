@@ -1,4 +1,5 @@
-// Every constant of the arm tracker: metres, seconds, radians; pixels where a name says so.
+// What a person, a rig or a gesture gives the arm tracker: metres, seconds; pixels where a name says so. Constants of a single
+// step stand beside it.
 #pragma once
 
 namespace duo::arm {
@@ -14,7 +15,7 @@ struct Params {
   double hand_centre_m = 0.115;     // fingertips to the centre of a stretched hand
   double least_hand_m2 = 0.0025;    // a hand seen edge on
   double shoulder_lift_m = 0.070;   // how far the collar bone lifts the joint when the upper arm turns from down to up, halved
-  double shoulder_forward_m = 0.035;  // likewise towards the camera
+  double shoulder_forward_m = 0.035;  // likewise along the viewing axis
 
   // Stereo.
   double disparity_sigma_px = 0.4;  // at full size

@@ -101,7 +101,7 @@ std::optional<PatchMatch> find_patch(const GrayLevels& gray, const Patch& patch,
   Vec2 step;
   for (int j = -reach; j <= reach; ++j)
     for (int i = -reach; i <= reach; ++i) {
-      const double score = correlation(patch.half, coarse, i + reach, j + reach) - kNear * std::hypot(i, j);
+      const double score = correlation(patch.half, coarse, i + reach, j + reach) - kNear * std::sqrt(i * i + j * j);
       if (score <= best) continue;
       best = score;
       step = {static_cast<double>(i), static_cast<double>(j)};
