@@ -47,11 +47,13 @@ const TrackedJoint& Arm::joint(Joint which) const {
 
 void Arm::track(const Scene& scene, std::span<const Vec3> rivals) {
   ++frame_;
-  torso_.track(scene.grid, scene.gray);
+  torso_.track(scene.grid, scene.gray);  // first, for the arm hangs on it: the same three steps, inside
   update_shoulder(scene.grid);
+
   const Prediction predicted = predict();
   const Observation seen = observe(scene, predicted, rivals);
   update(scene, predicted, seen);
+
   learn(scene, seen.arm);
 }
 

@@ -107,8 +107,7 @@ Result<void> Arm::learn_first(const Scene& scene, const std::vector<std::uint8_t
   const auto skin = histogram_of(grid, [&](int i) { return mine(i) && norm(grid.point(i) - arm.hand) < kHandM; });
   if (!skin)
     return Error{ErrorCode::kBadInput,
-                 "select the arm: no surface around the hand click; click the middle of the hand, or choose "
-                 "another frame"};
+                 "select the arm: no surface around the hand click; click the middle of the hand, or choose another frame"};
   const auto cloth = histogram_of(grid, [&](int i) {
     const Vec3 p = grid.point(i);
     return mine(i) && norm(p - arm.shoulder) < kClothM && arm.distance(p) > 0.10 && norm(p - arm.hand) > 0.15;
@@ -117,15 +116,12 @@ Result<void> Arm::learn_first(const Scene& scene, const std::vector<std::uint8_t
   learn_others(grid, person);
 
   const Rigid3 torso_from_rig = inverse(torso_.rig_from_torso());
-  const auto learn_far = [&](BodyMap& map, const std::vector<std::uint8_t>& mask, double arm_m, double hand_m) {
-    for (std::size_t i = 0; i < mask.size(); ++i) {
-      const Vec3 p = grid.point(static_cast<int>(i));
-      scratch_[i] = mask[i] && arm.distance(p) > arm_m && norm(p - arm.hand) > hand_m;
-    }
+  const auto learn_far = [&](BodyMap& map, const std::vector<std::uint8_t>& mask, const Clearance& from_arm) {
+    for (std::size_t i = 0; i < mask.size(); ++i) scratch_[i] = mask[i] && from_arm.holds(arm, grid.point(static_cast<int>(i)));
     map.learn(grid, scratch_, torso_from_rig, BodyMap::kStart);
   };
-  learn_far(body_skin_, mask_, 0.13, 0.22);
-  learn_far(body_, person, 0.11, 0.20);
+  learn_far(body_skin_, mask_, {0.22, 0.13, 0.13});
+  learn_far(body_, person, {0.20, 0.11, 0.11});
 
   for (int i = 0; i < grid.size(); ++i) {
     const Vec3 p = grid.point(i), local = p - arm.shoulder;

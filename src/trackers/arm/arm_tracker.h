@@ -7,12 +7,12 @@
 
 namespace duo {
 
-/// Follows one or two arms by colour, depth and the body's own constraints.
+/// Follows one or two arms by depth, colour and what a body can do.
 ///
-/// Source  the thesis (hue blobs, SIFT) with what its failures call for: static background, skin against cloth, a rigid torso
-/// for
-///         the shoulder, bone lengths for the elbow. Trackers of this kind: Wren et al., "Pfinder", 1997; Hua, Wu, "Multi-scale
-///         visual tracking by sequential belief propagation", 2004
+/// Source  the thesis (hue blobs, SIFT) with what its failures call for: a static background and a likelihood of skin (as in
+/// Wren
+///         et al., "Pfinder", 1997), a rigid torso for the shoulder, both bone lengths for the elbow (O'Rourke, Badler,
+///         "Model-based image analysis of human motion using constraint propagation", 1980: predict, observe, update)
 std::unique_ptr<Tracker> make_arm_tracker();
 
 }  // namespace duo

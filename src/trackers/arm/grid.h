@@ -1,6 +1,7 @@
 // The working grid: the frame in cells of step x step pixels, so that every later step costs the same for any picture size.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -56,9 +57,9 @@ struct Grid {
   std::vector<float> ray_x_, ray_y_;  // slopes of the cells' rays
 };
 
-/// Depth of the disc around a cell, in cells: the given quantile from near to far is `1 - quantile` of disparity.
+/// Depth of the disc around a place of the grid, radius in cells: its median, or nearer where `nearness` is above one half.
 /// None where fewer than three cells are known.
-std::optional<double> disc_depth_m(const Grid& grid, Vec2 at, double radius, double quantile = 0.5);
+std::optional<double> disc_depth_m(const Grid& grid, Vec2 at, double radius, double nearness = 0.5);
 
 /// Calls f(i) for the cells of the square of side 2 r + 1 around cell (x, y) that lie in the grid.
 template <class F>

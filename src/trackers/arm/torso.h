@@ -25,8 +25,10 @@ struct TorsoFit {
 
 /// The pose that explains the points best, from a predicted one.
 ///
-/// Gauss-Newton on (u, v, d) with weights that fall with the residual (Cauchy's, squared), from 12 px down to 2; few points
-/// leave the pose near the prediction Source   Blake, Zisserman, "Visual Reconstruction", 1987 (graduated non-convexity)
+/// Gauss-Newton on (u, v, d). Weights fall with the residual (Cauchy's, squared), its scale goes from 12 px down to 2. Few
+/// points leave the pose near the prediction.
+///
+/// Source  Blake, Zisserman, "Visual Reconstruction", 1987 (graduated non-convexity)
 TorsoFit fit_torso(const Pinhole& camera, const std::vector<TorsoPoint>& points, const Rigid3& predicted);
 
 class Torso {
