@@ -52,7 +52,7 @@ void Arm::track(const Scene& scene, std::span<const Vec3> rivals) {
 
   const Prediction predicted = predict();
   const Observation seen = observe(scene, predicted, rivals);
-  update(scene, predicted, seen);
+  update(scene.grid, predicted, seen);
 
   learn(scene, seen.arm);
 }
@@ -104,8 +104,8 @@ Arm::Observation Arm::observe(const Scene& scene, const Prediction& predicted, s
   return out;
 }
 
-void Arm::update(const Scene& scene, const Prediction& predicted, const Observation& seen) {
-  update_hand(scene.grid, predicted, seen.arm);
+void Arm::update(const Grid& grid, const Prediction& predicted, const Observation& seen) {
+  update_hand(grid, predicted, seen.arm);
   update_elbow(predicted, seen);
   if (seen.arm) return;
   const Vec3 fore = hand_.p - elbow_.p;  // a hidden hand stays within the forearm's reach

@@ -59,7 +59,7 @@ class Arm {
   // The method, frame by frame (arm.cpp).
   Prediction predict() const;
   Observation observe(const Scene& scene, const Prediction& predicted, std::span<const Vec3> rivals);
-  void update(const Scene& scene, const Prediction& predicted, const Observation& seen);
+  void update(const Grid& grid, const Prediction& predicted, const Observation& seen);
 
   void update_shoulder(const Grid& grid);
   void update_hand(const Grid& grid, const Prediction& predicted, const std::optional<Candidate>& seen);
