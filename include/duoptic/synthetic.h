@@ -1,7 +1,14 @@
 // A synthetic rig in a synthetic room: pictures with exact depth, made by our own renderer.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "duoptic/frame.h"
 #include "duoptic/rig.h"
@@ -10,9 +17,9 @@ namespace duo {
 
 struct SyntheticSetup {
   Size size = {640, 480};
-  std::uint32_t seed = 1;   // layout, textures, mounting errors and noise
-  double t_s = 0;           // moment of the scene: a ball swings, a globe turns
-  bool ideal = false;       // true: rectified pinhole cameras without noise or distortion
+  std::uint32_t seed = 1;  // layout, textures, mounting errors and noise
+  double t_s = 0;          // moment of the scene: a ball swings, a globe turns
+  bool ideal = false;      // true: rectified pinhole cameras without noise or distortion
 };
 
 /// One moment of the scene seen by both cameras, with its truth.
@@ -36,5 +43,81 @@ Rig synthetic_rig(const SyntheticSetup& setup);
 
 /// The rectified geometry of the ideal pair.
 Rectified synthetic_rectified(const SyntheticSetup& setup);
+
+// --- A person in the room -----------------------------------------------------------------------------------------------
+
+enum class SyntheticArm : std::uint8_t { kBySeed, kRight, kLeft };  // the person's own right or left
+
+struct SyntheticClipSetup {
+  Size size = {640, 480};
+  std::uint32_t seed = 1;       // room, rig and noise as in SyntheticSetup; the person's looks, place and sway
+  std::string script = "tour";  // wave, reach, sweep, behind, out, light, or tour: one after the other
+  int frames = 0;               // 30 a second; 0: the script once; more than it has: it starts again
+  SyntheticArm arm = SyntheticArm::kBySeed;
+};
+
+/// Where a joint is. It lies inside the body: what a camera sees of it is nearer.
+struct SyntheticJoint {
+  std::string name;  // left_ or right_ with shoulder elbow wrist hand hip knee ankle; head, neck, pelvis
+  Vec3 p_in_left_m;  // in the raw left camera
+  std::optional<std::array<double, 2>> uv_left_px, uv_right_px;  // in the raw pictures; none far outside of them
+  bool in_left = false, in_right = false;                        // inside the picture
+  bool visible_left = false, visible_right = false;              // and nothing farther in front than flesh and cloth are thick
+  std::optional<double>
+      surface_z_left_m;  // of the person's first surface on the way to the joint; none where the room hides it
+};
+
+/// One moment of a clip, with its truth.
+struct SyntheticClipFrame {
+  Pair pair;
+  double t_s = 0;
+  double ceiling_light = 1;  // power of the lamp
+  std::string act;           // what the arm does
+  std::vector<SyntheticJoint> joints;
+  Image<float> depth_left_m;        // as in SyntheticPair
+  Image<std::uint8_t> figure_left;  // 255 where that is the person
+};
+
+/// A person stands before the rig, looks at it and moves one arm.
+///
+/// Frames can be asked for in any order; the same setup gives the same bits with any number of threads.
+class SyntheticClip {
+ public:
+  /// Renders the still room: some seconds at 640x480.
+  ///
+  /// Errors  unknown script, size or number of frames that cannot be
+  static Result<SyntheticClip> open(const SyntheticClipSetup& setup, int threads);
+  SyntheticClip(SyntheticClip&&) noexcept;
+  ~SyntheticClip();
+
+  const SyntheticClipSetup& setup() const;  // frames and arm as they were chosen
+  const Rig& rig() const;
+  SyntheticClipFrame frame(int index);
+
+  /// What an undistorted pinhole camera in the left one's place, with its focal lengths and centre, would show.
+  struct Pinhole {
+    Image<float> depth_m;
+    Image<std::uint8_t> figure;
+  };
+  Pinhole pinhole(int index);
+
+  /// Flesh and cloth that may lie in front of a visible joint, by the joint's name without its side.
+  static double tolerance_m(const std::string& joint);
+
+ private:
+  struct State;
+  explicit SyntheticClip(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+std::vector<std::string> synthetic_scripts();
+
+/// Renders a clip into a new folder: left.avi and right.avi (MJPEG), calibration_truth.yml, truth.json, and every tenth frame
+/// depth/depth_NNNN.png (0.1 mm, ideal pinhole camera) with its mask depth/figure_NNNN.png. The folder appears whole or not
+/// at all; an earlier clip of that name is replaced.
+///
+/// Errors  those of SyntheticClip::open(); the name is taken by something else; a file cannot be written
+Result<void> write_clip(const SyntheticClipSetup& setup, const std::filesystem::path& folder, int threads,
+                        const std::function<void(int done, int frames)>& progress);
 
 }  // namespace duo

@@ -1,6 +1,7 @@
 # Explicit names, no glob: what is not listed is not built.
 set(dir ${PROJECT_SOURCE_DIR}/src/sinks)
 target_sources(duoptic PRIVATE
+  ${dir}/clip/avi.cpp
   ${dir}/draw_arm_region.cpp
   ${dir}/draw_cloud.cpp
   ${dir}/draw_disparity.cpp

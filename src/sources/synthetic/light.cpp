@@ -34,6 +34,8 @@ const std::array<Sample, kPhases * 3>& samples() {
   return made;
 }
 
+bool is_bright(Color power) { return power.r > 0 || power.g > 0 || power.b > 0; }
+
 struct Axes {
   Vec3 u, v;
 };
@@ -52,8 +54,7 @@ double highlight(Vec3 n, Vec3 towards_light, Vec3 towards_eye) {
 }  // namespace
 
 Light light_at(const Scene& scene, Vec3 p, Vec3 n, Vec3 towards_eye, int phase) {
-  constexpr double kLift_m = 1e-4;  // off the surface, so that it does not shade itself
-  const Vec3 from = p + kLift_m * n;
+  const Vec3 from = p + scene.lift_m * n;
   Light sum;
   for (const Panel& panel : scene.panels)
     for (int i = 0; i < kPanelSamples; ++i) {
@@ -68,7 +69,7 @@ Light light_at(const Scene& scene, Vec3 p, Vec3 n, Vec3 towards_eye, int phase) 
     }
 
   const Axes disc = across(scene.sun.towards), side = across(n);
-  for (int i = 0; i < kSunSamples; ++i) {
+  for (int i = 0; i < kSunSamples && is_bright(scene.sun.power); ++i) {
     constexpr double kFar_m = 20;
     const Sample& s = samples()[phase * kSunSamples + i];
     const Vec3 towards = normalized(scene.sun.towards + scene.sun.spread * (s.x * disc.u + s.y * disc.v));
@@ -80,7 +81,7 @@ Light light_at(const Scene& scene, Vec3 p, Vec3 n, Vec3 towards_eye, int phase) 
 
   // Ambient light from the cosine-weighted half-sphere, shut out by what is near.
   const Color around = mixed(scene.ambient_up, scene.ambient_down, 0.5 + 0.5 * n.y);
-  for (int i = 0; i < kAmbientSamples; ++i) {
+  for (int i = 0; i < kAmbientSamples && is_bright(around); ++i) {
     const Sample& s = samples()[phase * kAmbientSamples + i];
     const Vec3 towards = s.x * side.u + s.y * side.v + std::sqrt(std::max(0.0, 1 - s.x * s.x - s.y * s.y)) * n;
     const double reach = kAmbientReach_m * (i + 1) / kAmbientSamples;

@@ -3,18 +3,9 @@
 
 #include "core/pool.h"
 #include "duoptic/frame.h"
-#include "sources/synthetic/lens.h"
-#include "sources/synthetic/light.h"
-#include "sources/synthetic/scene.h"
+#include "sources/synthetic/shading.h"
 
 namespace duo::synthetic {
-
-/// What the ray through a pixel's centre meets.
-struct Surface {
-  int shape = -1;  // -1: nothing
-  double z_m = 0;  // in the camera
-  Vec3 p_in_world_m, normal;
-};
 
 struct Rendering {
   Image<Surface> surfaces;

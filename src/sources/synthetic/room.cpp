@@ -8,7 +8,7 @@
 namespace duo::synthetic {
 namespace {
 
-constexpr double kFloor_m = 1.05, kCeiling_m = -1.4, kLeft_m = -1.75, kRight_m = 1.9, kBack_m = 3.45, kFront_m = -1.2;
+constexpr double kCeiling_m = -1.4, kLeft_m = -1.75, kRight_m = 1.9, kBack_m = 3.45, kFront_m = -1.2;
 constexpr double kWindowTop_m = -0.98, kWindowSill_m = 0.12, kWindowNear_m = 1.55, kWindowFar_m = 2.85;
 
 // Colours that go together; the seed picks one set.
@@ -141,11 +141,14 @@ void add_back(const Build& b) {
   }
 }
 
-void add_middle(const Build& b, double t_s) {
+void add_rug(const Build& b) {
   const Palette& p = b.palette;
   const int rug = b.scene.add({.texture = Texture::kRug, .a = srgb(p.rug_a), .b = srgb(p.rug_b), .c = srgb(p.rug_c)});
   b.at({{-0.2 + b.jitter(0.1), kFloor_m, 2.15}, b.jitter(5)}).box({0, -0.006, 0}, {0.95, 0.006, 0.6}, rug, 0.005);
+}
 
+void add_middle(const Build& b, double t_s) {
+  const Palette& p = b.palette;
   const Group table = b.at({{-0.3 + b.jitter(0.06), kFloor_m, 2.1 + b.jitter(0.05)}, b.jitter(10)});
   add_table(table, {0.84, 0.4, 0.46}, b.wood_light);
   const int map =
@@ -170,7 +173,7 @@ void add_middle(const Build& b, double t_s) {
   b.at({{0.62 + b.jitter(0.03), kFloor_m, 2.75}, 28 + b.jitter(12)}).box({0, -0.14, 0}, {0.16, 0.14, 0.13}, cardboard, 0.01);
 }
 
-void add_front(const Build& b, double t_s) {
+void add_side_table(const Build& b) {
   // A side table at the lower left, with a plant: the nearest things, and thin ones.
   const Group side = b.at({{-0.52 + b.jitter(0.02), kFloor_m, 1.08 + b.jitter(0.02)}, 12 + b.jitter(8)});
   add_table(side, {0.42, 0.62, 0.36}, b.wood_dark);
@@ -179,7 +182,9 @@ void add_front(const Build& b, double t_s) {
   const int leaf = b.scene.add({.texture = Texture::kLeaf, .a = srgb(0x8fc060), .b = srgb(0x2f5f2c), .gloss = 0.25});
   const int stem = b.scene.add({.a = srgb(0x5f7f3a)});
   add_plant(side.at({-0.04, -0.62, 0.02}, about_y(b.jitter(180))), b.random, 0.4, pot, soil, leaf, stem);
+}
 
+void add_pendulum(const Build& b, double t_s) {
   // A ball swings on a string from the ceiling: a physical pendulum's period for its length.
   constexpr double kString_m = 1.28, kRadius_m = 0.085, kPeriod_s = 2.27, kSwing_degrees = 9;
   const double start = b.random.uniform(0, 1);
@@ -200,7 +205,7 @@ Rigid3 world_from_rig(std::uint32_t seed) {
   return {about_y(aside) * about_x(down), {}};
 }
 
-Scene living_room(std::uint32_t seed, double t_s) {
+Scene living_room(std::uint32_t seed, double t_s, Floor floor) {
   Scene scene;
   Random random(seed);
   const Palette& palette = kPalettes[(seed - 1) % kPalettes.size()];
@@ -216,8 +221,10 @@ Scene living_room(std::uint32_t seed, double t_s) {
   add_window(build);
   add_lights(build);
   add_back(build);
-  add_middle(build, t_s);
-  add_front(build, t_s);
+  add_rug(build);
+  if (floor == Floor::kFurnished) add_middle(build, t_s);
+  add_side_table(build);
+  if (floor == Floor::kFurnished) add_pendulum(build, t_s);
   scene.ready();
   return scene;
 }

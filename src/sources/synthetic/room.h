@@ -11,7 +11,12 @@ namespace duo::synthetic {
 /// It looks a little down and aside.
 Rigid3 world_from_rig(std::uint32_t seed);
 
+/// Height of the floor in the world.
+inline constexpr double kFloor_m = 1.05;
+
+enum class Floor { kFurnished, kFree };  // free: room for a person between the rug and the ceiling
+
 /// The room at a moment: a ball swings on a string and a globe turns, the rest is still. Surfaces lie 0.8 to 4 m away.
-Scene living_room(std::uint32_t seed, double t_s);
+Scene living_room(std::uint32_t seed, double t_s, Floor floor = Floor::kFurnished);
 
 }  // namespace duo::synthetic

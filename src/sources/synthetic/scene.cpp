@@ -151,7 +151,7 @@ bool Scene::blocked(const Ray& ray) const {
   bool found = false;
   const double t_max = 1;
   walk(ray, t_max, [&](int shape) {
-    found = shapes[shape].casts_shadow && trace(ray, shape) < t_max;
+    found = shapes[shape].casts_shadow && blocks(shapes[shape].solid, to_shape(ray, shape));
     return !found;
   });
   return found;

@@ -40,6 +40,14 @@ enum class Texture : std::uint8_t {
   kPoster,     // a landscape in a, b, c; fills the front (-z) of its box
   kCurtain,    // a with woven ornaments in b
   kSky,        // garden and sky behind the window; a: sky, b: leaves
+  // On the resting person:
+  kSkin,     // a
+  kFace,     // a: skin, b: brows and beard, c: lips; `scale_m` is the strength of the beard, 0 .. 1
+  kHair,     // strands in a and b
+  kPrint,    // a: shirt, with a badge in b and c on the chest
+  kStripes,  // a with stripes of b, every fourth of them c, `scale_m` apart
+  kPlaid,    // a crossed by b, with lines of c; `scale_m` is the repeat
+  kDenim,    // a with worn threads of b
 };
 
 struct Material {
@@ -83,6 +91,7 @@ class Scene {
   std::vector<Shape> shapes;
   std::vector<Panel> panels;
   Sun sun;
+  double lift_m = 1e-4;            // shadow rays start so far off a surface, or it would shade itself
   Color ambient_up, ambient_down;  // light from around on surfaces that face up and down
 
   int add(const Material& material);

@@ -107,6 +107,8 @@ double enter(const Frustum& f, const Ray& ray, double t_min) {
   return best;
 }
 
+double enter(const Blend& b, const Ray& ray, double t_min) { return b.enter(ray.origin, ray.direction, t_min); }
+
 Vec3 normal(const Box& box, Vec3 p) {
   const auto sign = [](double v) { return v < 0 ? -1.0 : 1.0; };
   if (box.rounding_m > 0) {
@@ -132,6 +134,8 @@ Vec3 normal(const Frustum& f, Vec3 p) {
   return normalized({p.x / r, -slope, p.z / r});
 }
 
+Vec3 normal(const Blend& b, Vec3 p) { return b.normal(p); }
+
 Vec3 extent(const Box& box) { return box.half; }
 Vec3 extent(const Ellipsoid& e) { return e.radii; }
 Vec3 extent(const Capsule& c) { return {c.radius_m, c.half_length_m + c.radius_m, c.radius_m}; }
@@ -139,11 +143,16 @@ Vec3 extent(const Frustum& f) {
   const double r = std::max(f.top_m, f.bottom_m);
   return {r, f.half_height_m, r};
 }
+Vec3 extent(const Blend& b) { return b.half_extent(); }
 
 }  // namespace
 
 double intersect(const Solid& solid, const Ray& ray, double t_min) {
   return std::visit([&](const auto& s) { return enter(s, ray, t_min); }, solid);
+}
+bool blocks(const Solid& solid, const Ray& ray) {
+  if (const Blend* blend = std::get_if<Blend>(&solid)) return blend->blocks(ray.origin, ray.direction);
+  return intersect(solid, ray, 0) < 1;
 }
 Vec3 normal_at(const Solid& solid, Vec3 p) {
   return std::visit([&](const auto& s) { return normal(s, p); }, solid);

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "duoptic/geometry.h"
+#include "sources/synthetic/blend.h"
 
 namespace duo::synthetic {
 
@@ -36,12 +37,15 @@ struct Frustum {
   double half_height_m = 0, top_m = 0, bottom_m = 0;
 };
 
-using Solid = std::variant<Box, Ellipsoid, Capsule, Frustum>;
+using Solid = std::variant<Box, Ellipsoid, Capsule, Frustum, Blend>;
 
 /// The t > t_min at which the ray enters the solid, or kNever. Rays that start inside see nothing of it.
 ///
-/// Exact  closed form, to rounding; rounded boxes are marched to within 1e-7 m
+/// Exact  closed form, to rounding; rounded boxes are marched to within 1e-7 m, blends to within 2e-6 m
 double intersect(const Solid& solid, const Ray& ray, double t_min);
+
+/// Whether the ray enters the solid at 0 < t < 1; blends are taken to within 0.2 mm.
+bool blocks(const Solid& solid, const Ray& ray);
 
 /// Outward unit normal at a point of the surface.
 Vec3 normal_at(const Solid& solid, Vec3 p);

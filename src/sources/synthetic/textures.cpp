@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sources/synthetic/figure_textures.h"
 #include "sources/synthetic/noise.h"
 #include "sources/synthetic/patterns.h"
 
@@ -180,6 +181,20 @@ Color texture(const Material& m, const TexturePoint& at) {
       return curtain(m, at);
     case Texture::kSky:
       return sky(m, at);
+    case Texture::kSkin:
+      return skin(m, at);
+    case Texture::kFace:
+      return face(m, at);
+    case Texture::kHair:
+      return hair(m, at);
+    case Texture::kPrint:
+      return print(m, at);
+    case Texture::kStripes:
+      return stripes(m, at);
+    case Texture::kPlaid:
+      return plaid(m, at);
+    case Texture::kDenim:
+      return denim(m, at);
   }
   return {};
 }

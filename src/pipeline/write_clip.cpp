@@ -1,0 +1,217 @@
+// Synthetic clips as folders: videos, the true rig, the truth of every frame, and depth.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "calib/rectification.h"
+#include "core/file.h"
+#include "duoptic/sink.h"
+#include "duoptic/synthetic.h"
+#include "sinks/clip/avi.h"
+
+namespace duo {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int kFramesPerSecond = 30, kJpegQuality = 88, kDepthEvery = 10;
+
+Error cannot_write(const fs::path& path, const std::string& why) {
+  return {ErrorCode::kWriteFailed, fmt::format("cannot write clip '{}': {}", path.string(), why)};
+}
+
+/// A folder beside the final one, which takes its name in publish() and is gone before that.
+class Staging {
+ public:
+  static Result<Staging> open(const fs::path& folder) {
+    std::error_code error;
+    if (fs::exists(folder, error) && !is_replaceable(folder))
+      return cannot_write(folder, "the name is taken by something that is no earlier clip; choose another");
+    const fs::path full = fs::absolute(folder, error).lexically_normal();
+    const fs::path parent = full.has_filename() ? full.parent_path() : full.parent_path().parent_path();
+    fs::create_directories(parent, error);
+    if (error) return cannot_write(folder, error.message() + "; write elsewhere or change the permissions");
+    std::string name = (parent / ".duoptic-clip-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr)
+      return cannot_write(folder, std::string(std::strerror(errno)) + "; write elsewhere or change the permissions");
+    fs::permissions(name, fs::perms(0755), error);
+    return Staging(full.has_filename() ? full : full.parent_path(), name);
+  }
+  Staging(Staging&& other) noexcept : folder_(std::move(other.folder_)), staged_(std::exchange(other.staged_, {})) {}
+  ~Staging() {
+    std::error_code ignored;
+    if (!staged_.empty()) fs::remove_all(staged_, ignored);
+  }
+
+  fs::path operator/(const std::string& name) const { return staged_ / name; }
+  std::string name() const { return folder_.filename().string(); }
+
+  Result<void> publish() {
+    std::error_code error;
+    const fs::path earlier = staged_.string() + "-earlier";
+    const bool replaces = fs::exists(folder_, error);
+    if (replaces) fs::rename(folder_, earlier, error);
+    if (!error) fs::rename(staged_, folder_, error);
+    if (error) {
+      std::error_code ignored;
+      if (replaces && fs::exists(earlier, ignored)) fs::rename(earlier, folder_, ignored);
+      return cannot_write(folder_, error.message());
+    }
+    staged_.clear();
+    if (replaces) fs::remove_all(earlier, error);
+    return {};
+  }
+
+ private:
+  Staging(fs::path folder, fs::path staged) : folder_(std::move(folder)), staged_(std::move(staged)) {}
+
+  // An empty folder, or one with a clip in it.
+  static bool is_replaceable(const fs::path& folder) {
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) return false;
+    return fs::is_empty(folder, error) || (fs::exists(folder / "truth.json", error) && fs::exists(folder / "left.avi", error));
+  }
+
+  fs::path folder_, staged_;
+};
+
+// --- The rig, in OpenCV's FileStorage format ----------------------------------------------------------------------------
+
+std::string matrix(const char* name, int rows, int cols, const std::vector<double>& data) {
+  std::string out = fmt::format("{}: !!opencv-matrix\n   rows: {}\n   cols: {}\n   dt: d\n   data: [ ", name, rows, cols);
+  for (std::size_t i = 0; i < data.size(); ++i)
+    out += fmt::format("{}{:.17e}", i == 0 ? "" : i % 3 == 0 ? ",\n       " : ", ", data[i]);
+  return out + " ]\n";
+}
+
+std::string calibration(const Rig& rig, const Rectified& rectified) {
+  std::string out =
+      fmt::format("%YAML:1.0\n---\nimage_width: {}\nimage_height: {}\n", rig.left.size.width, rig.left.size.height);
+  const auto camera = [&](const Camera& c, const std::string& side) {
+    out += matrix(("camera_matrix_" + side).c_str(), 3, 3, {c.fx_px, 0, c.cx_px, 0, c.fy_px, c.cy_px, 0, 0, 1});
+    out += matrix(("dist_coeffs_" + side).c_str(), 1, 5, {c.distortion.begin(), c.distortion.begin() + 5});
+  };
+  camera(rig.left, "left");
+  camera(rig.right, "right");
+  const auto rotation = [&](const char* name, const Mat3& r) { out += matrix(name, 3, 3, {r.m.begin(), r.m.end()}); };
+  const Vec3 t = rig.right_from_left.t_m;
+  rotation("R", rig.right_from_left.rotation);
+  out += matrix("T", 3, 1, {t.x, t.y, t.z});
+  rotation("R1", rectified.rig_from_left);
+  rotation("R2", rectified.rig_from_right);
+  const double f = rectified.focal_px, cx = rectified.cx_px, cy = rectified.cy_px, b = rectified.baseline_m;
+  out += matrix("P1", 3, 4, {f, 0, cx, 0, 0, f, cy, 0, 0, 0, 1, 0});
+  out += matrix("P2", 3, 4, {f, 0, cx, -f * b, 0, f, cy, 0, 0, 0, 1, 0});
+  out += matrix("Q", 4, 4, {1, 0, 0, -cx, 0, 1, 0, -cy, 0, 0, 0, f, 0, 0, 1 / b, 0});
+  return out;
+}
+
+// --- The truth -----------------------------------------------------------------------------------------------------------
+
+double rounded(double v, double per_unit) { return std::round(v * per_unit) / per_unit; }
+
+Json point(Vec3 p_m) { return {rounded(p_m.x, 1e5), rounded(p_m.y, 1e5), rounded(p_m.z, 1e5)}; }
+
+Json pixel(const std::optional<std::array<double, 2>>& uv_px) {
+  return uv_px ? Json{rounded((*uv_px)[0], 1e3), rounded((*uv_px)[1], 1e3)} : Json();
+}
+
+Json truth_of(const SyntheticClipFrame& frame, int index, const Mat3& rig_from_left) {
+  Json joints = Json::object();
+  for (const SyntheticJoint& joint : frame.joints)
+    joints[joint.name] = {{"xyz", point(joint.p_in_left_m)},
+                          {"xyz_rect", point(rig_from_left * joint.p_in_left_m)},
+                          {"uv_left", pixel(joint.uv_left_px)},
+                          {"uv_right", pixel(joint.uv_right_px)},
+                          {"in_left", joint.in_left},
+                          {"in_right", joint.in_right},
+                          {"vis_left", joint.visible_left},
+                          {"vis_right", joint.visible_right},
+                          {"surf_z_left", joint.surface_z_left_m ? Json(rounded(*joint.surface_z_left_m, 1e5)) : Json()}};
+  return {{"frame", index},
+          {"t", rounded(frame.t_s, 1e6)},
+          {"light", {rounded(frame.ceiling_light, 1e4), 1.0, 1.0}},  // ceiling lamp, window, floor lamp
+          {"joints", std::move(joints)}};
+}
+
+Json meta_of(const SyntheticClipSetup& setup, const Rig& rig, const std::string& name, Json events) {
+  Json tolerances = Json::object();
+  for (const char* joint : {"shoulder", "elbow", "wrist", "hand", "hip", "knee", "ankle", "head", "neck", "pelvis"})
+    tolerances[joint] = SyntheticClip::tolerance_m(joint);
+  return {{"clip", name},
+          {"width", setup.size.width},
+          {"height", setup.size.height},
+          {"fps", kFramesPerSecond},
+          {"frames", setup.frames},
+          {"selected_arm", setup.arm == SyntheticArm::kLeft ? "left" : "right"},
+          {"script", setup.script},
+          {"seed", setup.seed},
+          {"shutter_s", 0.0},
+          {"units", "metres"},
+          {"frame_convention", "left camera: x right, y down, z forward"},
+          {"baseline_m", rig.baseline_m()},
+          {"events", std::move(events)},
+          {"visible_tolerance_m", std::move(tolerances)},
+          {"mjpeg_quality", kJpegQuality}};
+}
+
+// Depth in 0.1 mm; 0 where that does not fit 16 bits.
+Image<std::uint16_t> in_tenths_mm(const Image<float>& depth_m) {
+  Image<std::uint16_t> out(depth_m.size());
+  for (int y = 0; y < out.height(); ++y)
+    for (int x = 0; x < out.width(); ++x) {
+      const double tenths = depth_m.at(y, x) * 1e4 + 0.5;
+      out.at(y, x) = tenths < 65536 ? static_cast<std::uint16_t>(tenths) : 0;
+    }
+  return out;
+}
+
+Result<void> write_depth(SyntheticClip& clip, int index, const Staging& out) {
+  const SyntheticClip::Pinhole pinhole = clip.pinhole(index);
+  DUO_TRY(write_png(in_tenths_mm(pinhole.depth_m), out / fmt::format("depth/depth_{:04}.png", index)));
+  return write_png(pinhole.figure, out / fmt::format("depth/figure_{:04}.png", index));
+}
+
+Result<void> write_into(SyntheticClip& clip, const Staging& out, const std::function<void(int, int)>& progress) {
+  const SyntheticClipSetup& setup = clip.setup();
+  DUO_TRY_ASSIGN(const Rectified rectified, rectified_geometry(clip.rig(), out.name()));
+  DUO_TRY(write_file(out / "calibration_truth.yml", calibration(clip.rig(), rectified)));
+  DUO_TRY_ASSIGN(AviWriter left, AviWriter::open(out / "left.avi", setup.size, kFramesPerSecond, kJpegQuality));
+  DUO_TRY_ASSIGN(AviWriter right, AviWriter::open(out / "right.avi", setup.size, kFramesPerSecond, kJpegQuality));
+  Json frames = Json::array(), events = Json::array();
+  for (int i = 0; i < setup.frames; ++i) {
+    const SyntheticClipFrame frame = clip.frame(i);
+    DUO_TRY(left.write(frame.pair.left.pixels));
+    DUO_TRY(right.write(frame.pair.right.pixels));
+    if (i % kDepthEvery == 0) DUO_TRY(write_depth(clip, i, out));
+    frames.push_back(truth_of(frame, i, rectified.rig_from_left));
+    if (events.empty() || events.back()["what"] != frame.act)
+      events.push_back({{"first", i}, {"last", i}, {"what", frame.act}});
+    events.back()["last"] = i;
+    if (progress) progress(i + 1, setup.frames);
+  }
+  DUO_TRY(left.finish());
+  DUO_TRY(right.finish());
+  const Json truth = {{"meta", meta_of(setup, clip.rig(), out.name(), std::move(events))}, {"frames", std::move(frames)}};
+  return write_file(out / "truth.json", truth.dump() + "\n");
+}
+
+}  // namespace
+
+Result<void> write_clip(const SyntheticClipSetup& setup, const fs::path& folder, int threads,
+                        const std::function<void(int, int)>& progress) {
+  DUO_TRY_ASSIGN(Staging out, Staging::open(folder));
+  std::error_code error;
+  if (!fs::create_directory(out / "depth", error)) return cannot_write(folder, error.message());
+  DUO_TRY_ASSIGN(SyntheticClip clip, SyntheticClip::open(setup, threads));
+  DUO_TRY(write_into(clip, out, progress));
+  return out.publish();
+}
+
+}  // namespace duo

@@ -1,0 +1,43 @@
+// Pictures into an AVI of JPEGs, as webcams give them.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/libav.h"
+#include "duoptic/image.h"
+#include "duoptic/result.h"
+
+namespace duo {
+
+/// Written under its final name from the start: meant for a folder that is not published yet. The same pictures give the same
+/// bytes.
+class AviWriter {
+ public:
+  /// Errors  the file cannot be made
+  static Result<AviWriter> open(const std::filesystem::path& path, Size size, int frames_per_second, int jpeg_quality);
+  Result<void> write(View<const Rgb8> picture);
+  Result<void> finish();
+
+ private:
+  struct FreeMuxer {
+    void operator()(AVFormatContext* p) const {
+      avio_closep(&p->pb);
+      avformat_free_context(p);
+    }
+  };
+
+  explicit AviWriter(std::string name, int frames_per_second, int jpeg_quality)
+      : name_(std::move(name)), rate_{frames_per_second, 1}, quality_(jpeg_quality) {}
+  Error failed(int error) const;
+
+  std::string name_;
+  AVRational rate_;
+  int quality_;
+  std::int64_t count_ = 0;
+  std::unique_ptr<AVFormatContext, FreeMuxer> muxer_;
+  av::Packet packet_;
+};
+
+}  // namespace duo

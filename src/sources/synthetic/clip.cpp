@@ -1,0 +1,224 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "duoptic/synthetic.h"
+#include "sources/synthetic/backdrop.h"
+#include "sources/synthetic/figure.h"
+#include "sources/synthetic/mounting.h"
+#include "sources/synthetic/noise.h"
+#include "sources/synthetic/room.h"
+#include "sources/synthetic/script.h"
+
+namespace duo {
+
+using namespace synthetic;
+
+namespace {
+
+constexpr double kFramesPerSecond = 30;
+
+// Where rig and person stand.
+struct Staging {
+  Rigid3 world_from_rig, world_from_person;
+};
+
+Staging stage(const SyntheticClipSetup& setup, double scale) {
+  Random random(setup.seed ^ 0x57a6eU);
+  const double aside = random.uniform(-3, 3), turned = random.uniform(-6, 6), distance_m = random.uniform(1.88, 2.02);
+  // The camera is tilted so that the picture's upper edge lies a hand above the hair, whatever its shape.
+  constexpr double kHair_m = 1.78, kRoom_m = 0.1;
+  const Camera camera = ideal_camera(setup.size);
+  const Vec3 to_top = normalized({0, kHair_m * scale + kRoom_m - kFloor_m, distance_m});
+  const Vec3 edge = normalized({0, (setup.size.height / 2.0) / camera.fy_px, 1});
+  const double c = dot(to_top, edge), s = to_top.y * edge.z - to_top.z * edge.y;
+  const Mat3 tilt{{1, 0, 0, 0, c, -s, 0, s, c}}, turn = about_y(aside);
+  return {{turn * tilt, {}}, {turn * about_y(turned), turn * Vec3{0, 0, distance_m} + Vec3{0, kFloor_m, 0}}};
+}
+
+struct NamedJoint {
+  const char* name;
+  Vec3 p_in_person_m;
+};
+
+std::vector<NamedJoint> joints_of(const Skeleton& bones) {
+  const auto &l = bones.arms[kLeftSide], &r = bones.arms[kRightSide], &ll = bones.legs[kLeftSide], &rl = bones.legs[kRightSide];
+  return {{"left_shoulder", l.root_m},
+          {"left_elbow", l.middle_m},
+          {"left_wrist", l.end_m},
+          {"left_hand", bones.hands_m[kLeftSide]},
+          {"left_hip", ll.root_m},
+          {"left_knee", ll.middle_m},
+          {"left_ankle", ll.end_m},
+          {"right_shoulder", r.root_m},
+          {"right_elbow", r.middle_m},
+          {"right_wrist", r.end_m},
+          {"right_hand", bones.hands_m[kRightSide]},
+          {"right_hip", rl.root_m},
+          {"right_knee", rl.middle_m},
+          {"right_ankle", rl.end_m},
+          {"head", bones.head_m},
+          {"neck", bones.neck_m},
+          {"pelvis", bones.pelvis_m}};
+}
+
+// A joint in one camera.
+struct Seen {
+  std::optional<std::array<double, 2>> uv_px;
+  bool in = false, visible = false;
+  std::optional<double> surface_z_m;
+};
+
+Seen look_at(Vec3 p_in_world, const Camera& camera, const Rigid3& world_from_camera, const Scene& room, const Scene& figure,
+             double tolerance_m) {
+  constexpr double kFarOutside = 0.6;  // of the width
+  Seen out;
+  const Vec3 p = inverse(world_from_camera) * p_in_world;
+  const double reach_x = (0.5 + kFarOutside) * camera.size.width / camera.fx_px;
+  const double reach_y = (0.5 * camera.size.height + kFarOutside * camera.size.width) / camera.fy_px;
+  if (p.z <= 0 || std::abs(p.x) > reach_x * p.z || std::abs(p.y) > reach_y * p.z) return out;
+  const Point2 at = project(camera, {p.x / p.z, p.y / p.z});
+  out.uv_px = {at.x, at.y};
+  out.in = at.x >= 0 && at.y >= 0 && at.x <= camera.size.width - 1 && at.y <= camera.size.height - 1;
+  const Ray ray{world_from_camera.t_m, (1 / p.z) * (p_in_world - world_from_camera.t_m)};
+  const double room_z = room.trace(ray).t, figure_z = figure.trace(ray).t;
+  if (figure_z < room_z) out.surface_z_m = figure_z;
+  out.visible = out.in && (p.z - std::min(room_z, figure_z)) * norm(ray.direction) <= tolerance_m;
+  return out;
+}
+
+std::string without_side(const std::string& joint) { return joint.substr(joint.find('_') + 1); }
+
+}  // namespace
+
+struct SyntheticClip::State {
+  SyntheticClipSetup setup;
+  Pool pool;
+  Looks looks;
+  Script script;
+  Staging staging;
+  Mounting mounts;
+  Rig rig;
+  Scene room;
+  Rigid3 world_from_left, world_from_right;
+  Backdrop left, right;
+
+  State(const SyntheticClipSetup& wanted, int threads, int arm)
+      : setup(wanted),
+        pool(threads),
+        looks(looks_of(setup.seed)),
+        script(acts_of(setup.script), arm, setup.seed),
+        staging(stage(setup, looks.scale)),
+        mounts(mounting({.size = setup.size, .seed = setup.seed})),
+        rig(rig_of(mounts)),
+        room(living_room(setup.seed, 0, Floor::kFree)),
+        world_from_left(staging.world_from_rig * mounts.left.rig_from_camera),
+        world_from_right(staging.world_from_rig * mounts.right.rig_from_camera),
+        left(pool, room, mounts.left.camera, world_from_left),
+        right(pool, room, mounts.right.camera, world_from_right) {
+    setup.arm = arm == kRightSide ? SyntheticArm::kRight : SyntheticArm::kLeft;
+    if (setup.frames == 0) setup.frames = static_cast<int>(std::lround(script.length_s() * kFramesPerSecond));
+  }
+
+  Skeleton skeleton(const Script::Moment& moment) const { return make_skeleton(moment.pose, looks.scale); }
+
+  Scene figure(const Skeleton& bones, const Lamps& lamps) const {
+    Scene scene;
+    add_figure(scene, staging.world_from_person, bones, looks);
+    light_like(room, lamps, scene);
+    scene.ready();
+    return scene;
+  }
+
+  SyntheticJoint joint(const NamedJoint& named, const Scene& figure_scene) const {
+    const Vec3 p = staging.world_from_person * named.p_in_person_m;
+    const double tolerance = tolerance_m(named.name);
+    const Seen l = look_at(p, rig.left, world_from_left, room, figure_scene, tolerance),
+               r = look_at(p, rig.right, world_from_right, room, figure_scene, tolerance);
+    return {named.name, inverse(world_from_left) * p, l.uv_px, r.uv_px, l.in, r.in, l.visible, r.visible, l.surface_z_m};
+  }
+};
+
+Result<SyntheticClip> SyntheticClip::open(const SyntheticClipSetup& setup, int threads) {
+  constexpr int kMaxSide = 4096, kMaxFrames = 100000;
+  const auto refused = [](const std::string& why) {
+    return Error{ErrorCode::kBadInput, "cannot render a synthetic clip: " + why};
+  };
+  if (acts_of(setup.script).empty())
+    return refused(
+        fmt::format("there is no script '{}'; choose one of {}", setup.script, fmt::join(synthetic_scripts(), ", ")));
+  if (setup.size.empty() || setup.size.width > kMaxSide || setup.size.height > kMaxSide)
+    return refused(fmt::format("{}x{} pixels; choose 1 to {} each way", setup.size.width, setup.size.height, kMaxSide));
+  if (setup.frames < 0 || setup.frames > kMaxFrames)
+    return refused(fmt::format("{} frames; choose 1 to {}, or 0 for the script once", setup.frames, kMaxFrames));
+  int arm = setup.arm == SyntheticArm::kLeft ? kLeftSide : kRightSide;
+  if (setup.arm == SyntheticArm::kBySeed) arm = (setup.seed & 1) != 0 ? kRightSide : kLeftSide;
+  return SyntheticClip(std::make_unique<State>(setup, threads, arm));
+}
+
+SyntheticClip::SyntheticClip(std::unique_ptr<State> state) : state_(std::move(state)) {}
+SyntheticClip::SyntheticClip(SyntheticClip&&) noexcept = default;
+SyntheticClip::~SyntheticClip() = default;
+
+const SyntheticClipSetup& SyntheticClip::setup() const { return state_->setup; }
+const Rig& SyntheticClip::rig() const { return state_->rig; }
+
+SyntheticClipFrame SyntheticClip::frame(int index) {
+  State& s = *state_;
+  SyntheticClipFrame out;
+  out.t_s = index / kFramesPerSecond;
+  const Script::Moment moment = s.script.at(out.t_s);
+  const Lamps lamps{moment.lamp};
+  const Skeleton bones = s.skeleton(moment);
+  const Scene figure = s.figure(bones, lamps);
+  out.act = moment.act;
+  out.ceiling_light = moment.lamp;
+
+  const SyntheticSetup at{.size = s.setup.size, .seed = s.setup.seed, .t_s = out.t_s};
+  Backdrop::Drawn left = s.left.draw(s.pool, figure, lamps), right = s.right.draw(s.pool, figure, lamps);
+  out.pair.left = taken(develop(s.pool, left.colors, webcam(at, 0)), out.t_s);
+  out.pair.right = taken(develop(s.pool, right.colors, webcam(at, 1)), out.t_s);
+  out.pair.sequence = out.pair.left.sequence = out.pair.right.sequence = static_cast<std::uint64_t>(index);
+  out.depth_left_m = std::move(left.z_m);
+  out.figure_left = std::move(left.is_figure);
+  for (const NamedJoint& named : joints_of(bones)) out.joints.push_back(s.joint(named, figure));
+  return out;
+}
+
+SyntheticClip::Pinhole SyntheticClip::pinhole(int index) {
+  State& s = *state_;
+  const Scene figure = s.figure(s.skeleton(s.script.at(index / kFramesPerSecond)), {});
+  Camera camera = s.rig.left;
+  camera.distortion = {};
+  const Size size = camera.size;
+  Pinhole out{Image<float>(size), Image<std::uint8_t>(size)};
+  each_row(s.pool, size.height, [&](int y) {
+    for (int x = 0; x < size.width; ++x) {
+      const Ray ray = pixel_ray(camera, s.world_from_left, {static_cast<double>(x), static_cast<double>(y)});
+      const double room_z = s.room.trace(ray).t, figure_z = figure.trace(ray).t;
+      out.depth_m.at(y, x) = static_cast<float>(std::min(room_z, figure_z));
+      out.figure.at(y, x) = figure_z < room_z ? 255 : 0;
+    }
+  });
+  return out;
+}
+
+double SyntheticClip::tolerance_m(const std::string& joint) {
+  constexpr std::pair<const char*, double> kTolerances[] = {
+      {"shoulder", 0.14}, {"elbow", 0.1},  {"wrist", 0.065}, {"hand", 0.06}, {"hip", 0.17},
+      {"knee", 0.1},      {"ankle", 0.09}, {"head", 0.16},   {"neck", 0.1},  {"pelvis", 0.18}};
+  for (const auto& [name, tolerance] : kTolerances)
+    if (without_side(joint) == name) return tolerance;
+  DUO_CHECK(false);
+  return 0;
+}
+
+std::vector<std::string> synthetic_scripts() {
+  std::vector<std::string> names = act_names();
+  names.push_back("tour");
+  return names;
+}
+
+}  // namespace duo

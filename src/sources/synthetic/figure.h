@@ -1,0 +1,24 @@
+// A person's flesh, hair and clothes on their bones.
+#pragma once
+
+#include <cstdint>
+
+#include "sources/synthetic/scene.h"
+#include "sources/synthetic/skeleton.h"
+
+namespace duo::synthetic {
+
+/// What a person looks like.
+struct Looks {
+  double scale = 1;
+  bool long_sleeves = false, long_hair = false;
+  Material face, skin, hair, shirt, trousers, shoes;
+};
+
+/// The look of a seed. Seed 1 wears a printed T-shirt.
+Looks looks_of(std::uint32_t seed);
+
+/// Adds the person's shapes to a scene.
+void add_figure(Scene& scene, const Rigid3& world_from_person, const Skeleton& skeleton, const Looks& looks);
+
+}  // namespace duo::synthetic

@@ -1,0 +1,66 @@
+#include "sources/synthetic/skeleton.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sources/synthetic/noise.h"
+
+namespace duo::synthetic {
+namespace {
+
+// y along the bone, x across as near to `hinge` as can be.
+Rigid3 along(Vec3 from_m, Vec3 to_m, Vec3 hinge) {
+  const Vec3 y = normalized(to_m - from_m), z = normalized(cross(hinge, y)), x = cross(y, z);
+  return {transposed(Mat3::from_rows(x, y, z)), from_m};
+}
+
+// Two bones from `root` to `end`, bent towards `bend`.
+Limb reach(Vec3 root_m, Vec3 end_m, Vec3 bend, double upper_m, double lower_m) {
+  const Vec3 way = end_m - root_m;
+  const double distance = std::clamp(norm(way), 0.3 * (upper_m + lower_m), 0.998 * (upper_m + lower_m));
+  const Vec3 direction = normalized(way), side = normalized(bend - dot(bend, direction) * direction);
+  const double foot = (upper_m * upper_m - lower_m * lower_m + distance * distance) / (2 * distance);
+  const double height = std::sqrt(std::max(upper_m * upper_m - foot * foot, 0.0));
+  Limb limb;
+  limb.root_m = root_m;
+  limb.middle_m = root_m + foot * direction + height * side;
+  limb.end_m = root_m + distance * direction;
+  const Vec3 hinge = cross(side, direction);
+  limb.person_from_upper = along(root_m, limb.middle_m, hinge);
+  limb.person_from_lower = along(limb.middle_m, limb.end_m, hinge);
+  return limb;
+}
+
+}  // namespace
+
+Skeleton make_skeleton(const Pose& pose, double scale) {
+  Skeleton out;
+  out.scale = scale;
+  const Vec3 hips{0, -0.93 * scale, 0};
+  out.person_from_torso = Rigid3{{}, hips + pose.sway_m} *
+                          Rigid3{about_z(pose.lean_degrees) * about_y(pose.twist_degrees), {}} * Rigid3{{}, -1.0 * hips};
+  const auto torso = [&](double x, double y, double z) { return out.person_from_torso * (scale * Vec3{x, y, z}); };
+  out.pelvis_m = torso(0, -0.94, 0.005);
+  out.neck_m = torso(0, -1.48, 0.015);
+  out.head_m = torso(0, -kHeadHeight_m, -0.01);
+  out.person_from_head = {out.person_from_torso.rotation * about_y(pose.look_degrees) * about_x(pose.nod_degrees), out.head_m};
+  for (int side = 0; side < 2; ++side) {
+    const double s = outwards(side);
+    const ArmPose& arm = pose.arms[side];
+    const auto turned = [&](Vec3 v) { return out.person_from_torso.rotation * Vec3{s * v.x, v.y, v.z}; };
+    const Vec3 shoulder = torso(s * 0.178, -kShoulderHeight_m, 0.01);
+    Limb& limb = out.arms[side];
+    limb = reach(shoulder, shoulder + scale * turned(arm.wrist_m), turned(arm.elbow), scale * kUpperArm_m, scale * kForearm_m);
+    const Vec3 forearm = normalized(limb.end_m - limb.middle_m), hand = normalized(forearm + turned(arm.fingers));
+    const Vec3 palm = turned(arm.palm);
+    limb.person_from_end = along(limb.end_m, limb.end_m + hand, cross(hand, palm));
+    out.curl_degrees[side] = arm.curl_degrees;
+    out.hands_m[side] = limb.end_m + scale * kPalm_m * hand;
+
+    const Vec3 ankle = scale * Vec3{s * 0.115, -0.095, 0.03};
+    out.legs[side] = reach(torso(s * 0.092, -0.915, 0.01), ankle, {s * 0.15, 0, -1}, scale * kThigh_m, scale * kShin_m);
+  }
+  return out;
+}
+
+}  // namespace duo::synthetic

@@ -1,0 +1,54 @@
+// The bones of a person and how they are posed. The person's frame: origin on the floor between the feet, x to the person's
+// left, y down, z to the back; a standing person looks along -z, towards the cameras.
+#pragma once
+
+#include <array>
+
+#include "duoptic/geometry.h"
+
+namespace duo::synthetic {
+
+/// The person's own sides; the cameras see the right arm on the left.
+enum Side : int { kRightSide = 0, kLeftSide = 1 };
+/// Sign of x on that side.
+inline double outwards(int side) { return side == kRightSide ? -1 : 1; }
+
+/// An arm in the frame of its shoulder: x outwards, y down, z to the back, whichever side.
+struct ArmPose {
+  Vec3 wrist_m;
+  Vec3 elbow;    // the elbow is bent towards there
+  Vec3 palm;     // the palm faces there
+  Vec3 fingers;  // added to the forearm's direction: bends the wrist
+  double curl_degrees = 18;
+};
+
+struct Pose {
+  std::array<ArmPose, 2> arms;
+  Vec3 sway_m;                                 // of the hips
+  double lean_degrees = 0, twist_degrees = 0;  // of the torso, about z and y
+  double look_degrees = 0, nod_degrees = 0;    // of the head
+};
+
+/// Two bones and what hangs on them; the frames have y along their bone.
+struct Limb {
+  Rigid3 person_from_upper, person_from_lower, person_from_end;
+  Vec3 root_m, middle_m, end_m;
+};
+
+struct Skeleton {
+  double scale = 1;                            // of every length, 1 for a person of 1.75 m
+  Rigid3 person_from_torso, person_from_head;  // at rest, the torso's frame is the person's
+  std::array<Limb, 2> arms, legs;
+  std::array<Vec3, 2> hands_m;  // palm centres
+  std::array<double, 2> curl_degrees{};
+  Vec3 head_m, neck_m, pelvis_m;
+};
+
+/// Lengths in metres of a person of 1.75 m.
+inline constexpr double kUpperArm_m = 0.29, kForearm_m = 0.26, kPalm_m = 0.068, kThigh_m = 0.42, kShin_m = 0.41,
+                        kShoulderHeight_m = 1.43, kHeadHeight_m = 1.635;
+
+/// Bone lengths do not depend on the pose: a wrist out of reach is brought nearer.
+Skeleton make_skeleton(const Pose& pose, double scale);
+
+}  // namespace duo::synthetic
