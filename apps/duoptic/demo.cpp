@@ -1,4 +1,5 @@
-// duoptic demo: the synthetic room through the whole of depth, with its accuracy and speed here, and pictures to look at.
+// duoptic demo: the synthetic room through the whole of depth and a person's arm through the tracker, with accuracy and speed
+// here, and pictures and videos to look at.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +8,9 @@
 #include "command.h"
 #include "duoptic/sink.h"
 #include "duoptic/synthetic.h"
+#include "eval_clip.h"
 #include "frame_files.h"
+#include "progress.h"
 #include "timing.h"
 #include "truth.h"
 
@@ -77,7 +80,35 @@ void print(const char* what, const Accuracy& a) {
              a.coverage_percent, a.bad_percent, a.depth_error_percent);
 }
 
-Result<Exit> run(const Options& options) {
+/// A person in the room moves an arm, hides its hand behind the back and shows it again; the tracker follows.
+Result<void> track_person(const Options& options, const CLI::App& app) {
+  const SyntheticClipSetup setup{.script = "behind"};
+  fmt::print("\nRendering a person who moves an arm ...\n");
+  std::fflush(stdout);
+  const std::filesystem::path clip = std::filesystem::path(options.folder) / "clip";
+  {
+    Progress progress(app, 0, false);
+    DUO_TRY(write_clip(setup, clip, options.engine.threads, [&](int done, int) { progress.frame(done); }));
+  }
+  DUO_TRY_ASSIGN(const ClipTruth truth, load_clip(clip));
+  std::vector<ClipScore> scores;
+  for (const char* preset : {"default", "thesis"}) {
+    ArmOptions arm;
+    arm.engine = options.engine;
+    arm.tracker_preset = preset;
+    const std::string video = (std::filesystem::path(options.folder) / fmt::format("arm_{}.mp4", preset)).string();
+    DUO_TRY_ASSIGN(ClipScore score, track_clip(clip, truth, arm, 0, video));
+    if (!score.note.empty()) say(app, "warning: " + score.note);
+    scores.push_back(std::move(score));
+  }
+  fmt::print("\nThe arm against its exact joints, mm; the thesis's tracker of 2010 beside ours\n");
+  print(scores);
+  fmt::print("\nLook at {0}/arm_default.mp4 (joints and bones, depth, arm region, hue), and how {0}/arm_thesis.mp4 loses it.\n",
+             options.folder);
+  return {};
+}
+
+Result<Exit> run(const Options& options, const CLI::App& app) {
   fmt::print("Rendering a room with exact depth, seen by two distorted, noisy webcams ...\n");
   std::fflush(stdout);
   const SyntheticPair raw = render_synthetic({}, options.engine.threads);
@@ -99,18 +130,19 @@ Result<Exit> run(const Options& options) {
       "\nLook at {0}/demo.png (camera, depth with its legend in metres, points from the side);\n"
       "beside it left.png, disparity.png, depth.png (mm), cloud.png and cloud.ply (for a 3D viewer).\n",
       options.folder);
+  DUO_TRY(track_person(options, app));
   return Exit::kOk;
 }
 
 }  // namespace
 
 Command add_demo(CLI::App& app) {
-  CLI::App* sub = app.add_subcommand("demo", "A synthetic room: accuracy, speed and pictures");
+  CLI::App* sub = app.add_subcommand("demo", "A synthetic room and a person in it: accuracy, speed, pictures and videos");
   const auto options = std::make_shared<Options>();
   sub->add_option("-o,--output", options->folder, "Folder for the pictures")->type_name("DIR")->capture_default_str();
   options->engine.add_to(*sub);
   sub->footer("Example:\n  duoptic demo -o demo");
-  return {sub, [options] { return run(*options); }};
+  return {sub, [options, sub] { return run(*options, *sub); }};
 }
 
 }  // namespace duo::app

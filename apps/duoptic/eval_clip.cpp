@@ -7,8 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "arm_run.h"
-#include "clip_score.h"
+#include "eval_clip.h"
 #include "timing.h"
 
 namespace duo::app {
@@ -35,14 +34,6 @@ struct Options {
   ArmOptions arm;
 };
 
-struct ClipScore {
-  std::string clip, tracker_preset;
-  std::int64_t first = 0, frames = 0;
-  double fps = 0;
-  std::array<JointScore, kArmJoints> joints;
-  std::optional<DepthScore> depth;
-};
-
 /// The truth, each click moved by `jitter_px` in a direction of its own, the same in every run.
 ArmSelection clicks(const ArmTruth& truth, double jitter_px) {
   ArmSelection selection;
@@ -59,11 +50,17 @@ JointSample sample(const JointTruth& truth, const Keypoint& found, const Mat3& r
   return {truth.visible, found.state, 1000 * norm(off_m), 1000 * found.sigma_m};
 }
 
-Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, const Options& options) {
-  DUO_TRY_ASSIGN(ArmRun run,
-                 ArmRun::open((folder / "left.avi").string(), (folder / "right.avi").string(), truth.rig, options.arm));
+}  // namespace
+
+Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, const ArmOptions& options, double jitter_px,
+                             const std::string& video) {
+  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open((folder / "left.avi").string(), (folder / "right.avi").string(), truth.rig, options));
   const Rectified& rectified = run.recording().rectified;
-  ClipScore score{truth.name, options.arm.tracker_preset, truth.first_visible(), 0, 0, {}, {}};
+  ClipScore score{truth.name, options.tracker_preset, truth.first_visible(), 0, 0, {}, {}, {}};
+  std::unique_ptr<Sink> sink;
+  if (!video.empty()) {
+    DUO_TRY_ASSIGN(sink, make_panel_video(video, run.recording(), score.note));
+  }
   std::array<std::vector<JointSample>, kArmJoints> samples;
   DepthTally depth;
   double busy_ms = 0;  // without reading and scoring the truth
@@ -77,7 +74,7 @@ Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, con
                  next = run.read();
                  if (!next || *next != Next::kPicture || i < score.first) return;
                  frame = &run.to_frame();
-                 if (i == score.first) selected = run.select({clicks(joints, options.jitter_px)});
+                 if (i == score.first) selected = run.select({clicks(joints, jitter_px)});
                  if (selected) arms = &run.track();
                }).wall_ms;
     if (!next) return next.error();
@@ -90,13 +87,17 @@ Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, con
       samples[j].push_back(sample(joints[j], arms->front().joints[j], rectified.rig_from_left));
     DUO_TRY_ASSIGN(const DepthTruth depth_truth, load_depth(folder, i));
     depth.add(*frame, rectified, truth.rig.left, depth_truth);
+    if (sink) DUO_TRY(sink->write(run.tracked(*arms)));
     ++score.frames;
   }
   score.fps = 1000 * static_cast<double>(score.first + score.frames) / busy_ms;
   for (std::size_t j = 0; j < kArmJoints; ++j) score.joints[j] = score_joint(samples[j]);
   score.depth = depth.score();
+  if (sink) DUO_TRY(sink->finish());
   return score;
 }
+
+namespace {
 
 template <class T>
 nlohmann::json or_null(const std::optional<T>& value) {
@@ -153,6 +154,16 @@ void print(const ClipScore& score) {
   fmt::print("\n");
 }
 
+}  // namespace
+
+void print(const std::vector<ClipScore>& scores) {
+  fmt::print("{:<18} {:<8} {:<9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "clip", "tracker", "joint", "median", "p95",
+             "bad", "recover", "hidden", "h.lost", "3 sigma");
+  for (const ClipScore& score : scores) print(score);
+}
+
+namespace {
+
 Result<Exit> run(const Options& options) {
   std::vector<ClipScore> scores;
   for (const std::string& folder : options.folders) {
@@ -162,7 +173,7 @@ Result<Exit> run(const Options& options) {
     if (options.compare) presets = {"default", "thesis"};
     for (const std::string& preset : presets) {
       one.arm.tracker_preset = preset;
-      DUO_TRY_ASSIGN(ClipScore score, track_clip(folder, truth, one));
+      DUO_TRY_ASSIGN(ClipScore score, track_clip(folder, truth, one.arm, options.jitter_px));
       scores.push_back(std::move(score));
     }
   }
@@ -172,9 +183,7 @@ Result<Exit> run(const Options& options) {
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     return Exit::kOk;
   }
-  fmt::print("{:<18} {:<8} {:<9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "clip", "tracker", "joint", "median", "p95",
-             "bad", "recover", "hidden", "h.lost", "3 sigma");
-  for (const ClipScore& score : scores) print(score);
+  print(scores);
   return Exit::kOk;
 }
 
