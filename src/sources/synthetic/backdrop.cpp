@@ -82,7 +82,7 @@ struct Shadows {
 }  // namespace
 
 void light_like(const Scene& room, const Lamps& lamps, Scene& into) {
-  into.lift_m = 2e-3;  // round bodies: a march along the surface would be slow
+  into.lift_m = 4e-3;  // round bodies: a march along the surface would be slow
   into.panels = room.panels;
   into.panels[kCeiling].power = lamps.ceiling * into.panels[kCeiling].power;
   into.sun = room.sun;
@@ -172,11 +172,18 @@ struct FigurePart {
     return false;
   }
 
+  // The light of a pixel around that shows the same; at rims, of the one that faces the most alike.
   Light light_for(const Eye& eye, const Surface& s, int y, int x) const {
+    double best = -1;
+    Light light_there;
     for (int yy = std::max(y - 1, 0); yy <= std::min(y + 1, surfaces.height() - 1); ++yy)
-      for (int xx = std::max(x - 1, 0); xx <= std::min(x + 1, surfaces.width() - 1); ++xx)
-        if (same_surface(s, surfaces.at(yy, xx))) return light.at(yy, xx);
-    return full_light(eye, s);
+      for (int xx = std::max(x - 1, 0); xx <= std::min(x + 1, surfaces.width() - 1); ++xx) {
+        const Surface& there = surfaces.at(yy, xx);
+        if (same_surface(s, there)) return light.at(yy, xx);
+        const double alike = dot(s.normal, there.normal);
+        if (there.shape == s.shape && alike > best) best = alike, light_there = light.at(yy, xx);
+      }
+    return best > 0 ? light_there : full_light(eye, s);
   }
 };
 

@@ -34,7 +34,6 @@ Blend::Blend(std::vector<Lobe> lobes) {
     placed.way_m = lobe.blend_from_lobe.rotation * Vec3{0, lobe.length_m, 0};
     placed.radius_m = std::max(lobe.from_m, lobe.to_m) / std::min(lobe.flat, 1.0);
     placed.reach_m = lobe.length_m / 2 + placed.radius_m;
-    max_soft_m_ = std::max(max_soft_m_, lobe.soft_m);
     const auto grow = [](double& half, double centre, double reach) { half = std::max(half, std::abs(centre) + reach); };
     // Both end balls; a seam bulges by a quarter of its softness at most.
     for (const auto& [y, radius] : {std::pair{0.0, lobe.from_m}, std::pair{lobe.length_m, lobe.to_m}}) {
@@ -46,6 +45,8 @@ Blend::Blend(std::vector<Lobe> lobes) {
     }
     lobes_.push_back(placed);
   }
+  double margin = 0;
+  for (auto it = lobes_.rbegin(); it != lobes_.rend(); ++it) it->margin_m = margin = std::max(margin, it->lobe.soft_m);
 }
 
 // The distance to a round cone; squeezed along z it is right to first order, by the length of its gradient.
@@ -58,14 +59,14 @@ double Blend::Placed::distance(Vec3 p_in_blend) const {
   if (along < 0 || along > across * lobe.length_m) {
     const double y = along < 0 ? p.y : p.y - lobe.length_m, to_end = std::sqrt(r * r + y * y);
     d = to_end - (along < 0 ? lobe.from_m : lobe.to_m);
-    const double inverse = to_end > 0 ? 1 / to_end : 0;
-    out_r = r * inverse, out_y = y * inverse;
+    out_r = r, out_y = y;
+    if (lobe.flat != 1 && to_end > 0) out_r /= to_end, out_y /= to_end;
   } else {
     d = across * r + slope * p.y - lobe.from_m;
     out_r = across, out_y = slope;
   }
   if (lobe.flat != 1 && r > 0) {
-    const double gx = out_r * p.x / r, gz = lobe.flat * out_r * z / r;
+    const double per_r = out_r / r, gx = per_r * p.x, gz = lobe.flat * per_r * z;
     d /= std::sqrt(std::max(gx * gx + out_y * out_y + gz * gz, 0.01));
   }
   return std::max(d, p.y - lobe.cut_m);
@@ -92,7 +93,7 @@ double Blend::distance(Vec3 p, const Near& near) const {
   return d;
 }
 
-// A lobe that the ray passes farther away than seams are soft changes nothing.
+// The lobes that the ray passes near enough to change something.
 Blend::Near Blend::near(Vec3 origin, Vec3 direction, double t_min, double t_max) const {
   Near out;
   const double speed2 = dot(direction, direction), inverse = 1 / speed2;
@@ -100,13 +101,13 @@ Blend::Near Blend::near(Vec3 origin, Vec3 direction, double t_min, double t_max)
   for (std::size_t i = 0; i < lobes_.size(); ++i) {
     const Placed& lobe = lobes_[i];
     const Vec3 to_centre = lobe.centre_m - origin;
-    const double reach = lobe.reach_m + max_soft_m_, middle = dot(to_centre, direction) * inverse;
+    const double reach = lobe.reach_m + lobe.margin_m, middle = dot(to_centre, direction) * inverse;
     const double half2 = (reach * reach - dot(to_centre, to_centre)) * inverse + middle * middle;
     if (half2 < 0) continue;
     const Vec3 start = across(lobe.start_m - origin), way = across(lobe.way_m);
     const double ways = dot(way, way), share = ways > 0 ? std::clamp(-dot(start, way) / ways, 0.0, 1.0) : 0;
     const Vec3 nearest = start + share * way;
-    const double radius = lobe.radius_m + max_soft_m_;
+    const double radius = lobe.radius_m + lobe.margin_m;
     if (dot(nearest, nearest) > radius * radius) continue;
     const double half = std::sqrt(half2);
     if (middle + half <= t_min || middle - half >= t_max) continue;
@@ -120,23 +121,28 @@ Blend::Near Blend::near(Vec3 origin, Vec3 direction, double t_min, double t_max)
 }
 
 double Blend::enter(Vec3 origin, Vec3 direction, double t_min) const {
-  constexpr double kClose_m = 2e-6;
+  constexpr double kClose_m = 2e-6, kFlat_m = 3e-3;
   constexpr int kMaxSteps = 240;  // a ray that grazes one lobe on its way to the next needs many
   const Near near = this->near(origin, direction, t_min, kNone);
   if (near.count == 0) return kNone;
   const double per_m = 1 / norm(direction);
-  double t = near.in;
+  double t = near.in, before = 0, step_m = 0;
   if (t == t_min && distance(origin + t * direction, near) < 0) return kNone;  // starts inside
   for (int i = 0; i < kMaxSteps && t <= near.out; ++i) {
     const double d = distance(origin + t * direction, near);
     if (std::abs(d) < kClose_m) return t > t_min ? t : kNone;
-    t += (d > 0 ? 0.95 : 1.0) * d * per_m;  // squeezed lobes may tell a little too much; then it steps back
+    // Close by, the surface is nearly flat: as fast as the last step brought it nearer, so will the next. A step too far, here
+    // or because a squeezed lobe tells a little too much, is taken back.
+    const double rate = std::abs(d) < kFlat_m && step_m != 0 ? std::clamp((before - d) / step_m, 0.4, 1.0) : 1.0;
+    before = d;
+    step_m = d / rate;
+    t += step_m * per_m;
   }
   return kNone;
 }
 
 bool Blend::blocks(Vec3 origin, Vec3 direction) const {
-  constexpr double kClose_m = 2e-4, kLeast_m = 1e-3;
+  constexpr double kClose_m = 3e-4, kLeast_m = 3e-3;
   const Near near = this->near(origin, direction, 0, 1);
   if (near.count == 0) return false;
   const double per_m = 1 / norm(direction);
@@ -154,7 +160,7 @@ Vec3 Blend::normal(Vec3 p) const {
   Near near;
   for (std::size_t i = 0; i < lobes_.size(); ++i) {
     const Vec3 off = p - lobes_[i].centre_m;
-    const double reach = lobes_[i].reach_m + max_soft_m_;
+    const double reach = lobes_[i].reach_m + lobes_[i].margin_m;
     if (dot(off, off) < reach * reach) near.add(i);
   }
   // Differences along the corners of a tetrahedron.

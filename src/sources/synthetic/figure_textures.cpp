@@ -131,7 +131,7 @@ Color plaid(const Material& m, const TexturePoint& at) {
 
 Color denim(const Material& m, const TexturePoint& at) {
   const double threads = grain(at, {190, 70, 190}, 3, 9), worn = grain(at, {14, 6, 14}, 3, 10);
-  const double twill = std::clamp(0.28 + 1.5 * (threads - 0.5) + 1.1 * (worn - 0.5), 0.0, 0.9);
+  const double twill = std::clamp(0.28 + 0.8 * (threads - 0.5) + 0.9 * (worn - 0.5), 0.0, 0.8);
   return (0.75 + 0.4 * grain(at, {12, 7, 12}, 2, 11)) * mixed(m.a, m.b, twill);
 }
 

@@ -21,3 +21,4 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/textures.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/webcam.cpp)
 duoptic_test(sources/synthetic ${PROJECT_SOURCE_DIR}/src/sources/synthetic/synthetic_test.cpp)
+duoptic_test(sources/synthetic_clip ${PROJECT_SOURCE_DIR}/src/sources/synthetic/clip_test.cpp)

@@ -44,7 +44,7 @@ using Solid = std::variant<Box, Ellipsoid, Capsule, Frustum, Blend>;
 /// Exact  closed form, to rounding; rounded boxes are marched to within 1e-7 m, blends to within 2e-6 m
 double intersect(const Solid& solid, const Ray& ray, double t_min);
 
-/// Whether the ray enters the solid at 0 < t < 1; blends are taken to within 0.2 mm.
+/// Whether the ray enters the solid at 0 < t < 1; thin rims of blends may be missed.
 bool blocks(const Solid& solid, const Ray& ray);
 
 /// Outward unit normal at a point of the surface.

@@ -1,0 +1,88 @@
+// duoptic synth: a person in a room, rendered with the truth of every joint.
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <thread>
+
+#include "command.h"
+#include "duoptic/synthetic.h"
+#include "progress.h"
+
+namespace duo::app {
+namespace {
+
+constexpr char kFooter[] =
+    "Writes into DIR: left.avi and right.avi (MJPEG, 30 frames/s, two distorted, noisy webcams), calibration_truth.yml,\n"
+    "truth.json (joints of every frame in the raw left camera), and every tenth frame depth/depth_NNNN.png (16 bits, 0.1 mm)\n"
+    "with the person's mask depth/figure_NNNN.png. DIR appears when all is done; an earlier clip there is replaced.\n\n"
+    "Example:\n"
+    "  duoptic synth --script behind --seed 2 -o clip\n"
+    "  duoptic eval clip clip";
+
+const std::map<std::string, SyntheticArm> kArms = {
+    {"auto", SyntheticArm::kBySeed}, {"left", SyntheticArm::kLeft}, {"right", SyntheticArm::kRight}};
+
+struct Options {
+  SyntheticClipSetup clip;
+  std::string size = "640x480", arm = "auto", folder;
+  int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  bool quiet = false;
+};
+
+/// "640x480" as a size; throws what CLI11 reports as a usage error.
+Size parse_size(const std::string& text) {
+  Size size;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%5dx%5d%c", &size.width, &size.height, &rest) != 2 || size.empty())
+    throw CLI::ValidationError("--size", fmt::format("'{}' is not WIDTHxHEIGHT, like 640x480", text));
+  return size;
+}
+
+Result<Exit> run(const Options& options, const CLI::App& app) {
+  const auto start = std::chrono::steady_clock::now();
+  if (!options.quiet) say(app, "preparing the room ...");
+  std::unique_ptr<Progress> progress;  // its end clears the line
+  int frames = 0;
+  DUO_TRY(write_clip(options.clip, options.folder, options.threads, [&](int done, int all) {
+    if (!progress) progress = std::make_unique<Progress>(app, all, options.quiet);
+    progress->frame(done);
+    frames = all;
+  }));
+  progress.reset();
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  fmt::print("{}: {} frames of '{}', {}x{}, seed {}, in {:.1f} s\n", options.folder, frames, options.clip.script,
+             options.clip.size.width, options.clip.size.height, options.clip.seed, took.count());
+  return Exit::kOk;
+}
+
+}  // namespace
+
+Command add_synth(CLI::App& app) {
+  CLI::App* sub = app.add_subcommand("synth", "Render a person in a room: two webcams' videos with exact truth");
+  const auto options = std::make_shared<Options>();
+  sub->add_option("--script", options->clip.script, "What the arm does; tour: one after the other")
+      ->check(CLI::IsMember(synthetic_scripts()))
+      ->capture_default_str();
+  sub->add_option("--frames", options->clip.frames, "How many, 30 a second; 0: the script once")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str();
+  sub->add_option("--size", options->size, "Of one picture")->type_name("WxH")->capture_default_str();
+  sub->add_option("--seed", options->clip.seed, "Person, clothes, room, rig and noise")->capture_default_str();
+  sub->add_option("--arm", options->arm, "The person's own left or right; auto: by the seed")
+      ->check(CLI::IsMember({"auto", "left", "right"}))
+      ->capture_default_str();
+  sub->add_option("--threads", options->threads, "Threads; the result does not depend on them")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  sub->add_flag("--quiet", options->quiet, "No progress on stderr");
+  sub->add_option("-o,--output", options->folder, "Folder for the clip")->type_name("DIR")->required();
+  sub->parse_complete_callback([options] {
+    options->clip.size = parse_size(options->size);
+    options->clip.arm = kArms.at(options->arm);
+  });
+  sub->footer(kFooter);
+  return {sub, [options, sub] { return run(*options, *sub); }};
+}
+
+}  // namespace duo::app
