@@ -142,8 +142,10 @@ TEST(SyntheticPerson, TruthAgreesWithLensAndDepth) {
             high = std::max(high, frame.depth_left_m.at(y + dy, x + dx));
           }
         if (!inside) continue;
-        EXPECT_GT(*j.surface_z_left_m, low - 0.002F) << j.name << " frame " << i;
-        EXPECT_LT(*j.surface_z_left_m, high + 0.002F) << j.name << " frame " << i;
+        // Between pixel centres a round thing (the tip of the nose) can stand out by a part of the relief around.
+        const float slack = 0.001F + 0.25F * (high - low);
+        EXPECT_GT(*j.surface_z_left_m, low - slack) << j.name << " frame " << i;
+        EXPECT_LT(*j.surface_z_left_m, high + slack) << j.name << " frame " << i;
         if (j.visible_left) {
           ++visible;
           EXPECT_LT(*j.surface_z_left_m, j.p_in_left_m.z + 1e-6) << j.name << ": a joint lies inside the body";
@@ -151,6 +153,29 @@ TEST(SyntheticPerson, TruthAgreesWithLensAndDepth) {
       }
     }
     EXPECT_GT(visible, 60);
+  }
+}
+
+// A wrist raised before the wall lies in the middle of the arm that the picture shows.
+TEST(SyntheticPerson, JointsLieInTheMiddleOfTheirLimb) {
+  for (const auto& [script, index] : {std::pair{"wave", 29}, std::pair{"sweep", 29}}) {
+    SyntheticClip clip = open(script, 1, {320, 240});
+    const SyntheticClipFrame frame = clip.frame(index);
+    const auto elbow = *joint(frame, "right_elbow").uv_left_px, wrist = *joint(frame, "right_wrist").uv_left_px;
+    const double length = std::hypot(wrist[0] - elbow[0], wrist[1] - elbow[1]);
+    ASSERT_GT(length, 20);
+    const double ax = -(wrist[1] - elbow[1]) / length, ay = (wrist[0] - elbow[0]) / length;
+    const auto reach = [&](double sign) {
+      double r = 0;
+      while (frame.figure_left.at(static_cast<int>(wrist[1] + sign * r * ay + 0.5),
+                                  static_cast<int>(wrist[0] + sign * r * ax + 0.5)) == 255)
+        r += 0.25;
+      return r;
+    };
+    const double one = reach(1), other = reach(-1);
+    EXPECT_NEAR(one, other, 1.6) << script;  // a pixel's rounding, and the hand that bends away
+    EXPECT_GT(one + other, 4) << script;
+    EXPECT_LT(one + other, 14) << script;
   }
 }
 

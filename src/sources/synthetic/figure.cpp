@@ -135,8 +135,8 @@ struct Dresser {
     for (const double s : {-1.0, 1.0}) f.ball({s * 0.072, -1.31, -0.065}, 0.075, {.flat = 1.3, .soft_m = 0.06});
     for (int side = 0; side < 2; ++side) {
       f.on(bones.arms[side].person_from_upper, rest.upper_arm(side));
-      const double end = looks.long_sleeves ? kUpperArm_m + 0.02 : 0.205;
-      f.lobe({0, 0.0, 0}, {0, end, 0}, 0.064, looks.long_sleeves ? 0.05 : 0.06,
+      const double end = looks.long_sleeves ? kUpperArm_m - 0.04 : 0.205;
+      f.lobe({0, 0.0, 0}, {0, end, 0}, 0.064, looks.long_sleeves ? 0.052 : 0.06,
              {.soft_m = 0.05, .cut_m = looks.long_sleeves ? kNoCut : end});
     }
     put(f, material);
@@ -144,7 +144,7 @@ struct Dresser {
     for (int side = 0; side < 2; ++side) {
       Flesh sleeve(bones.scale);
       sleeve.on(bones.arms[side].person_from_upper, rest.upper_arm(side));
-      sleeve.lobe({0, 0.2, 0}, {0, kUpperArm_m, 0}, 0.051, 0.05);
+      sleeve.lobe({0, 0.15, 0}, {0, kUpperArm_m, 0}, 0.055, 0.05);
       sleeve.on(bones.arms[side].person_from_lower, rest.forearm(side));
       sleeve.lobe({0, 0, 0}, {0, 0.25, 0}, 0.05, 0.039, {.soft_m = 0.025, .cut_m = 0.245});
       put(sleeve, material);
@@ -176,10 +176,11 @@ struct Dresser {
   void arm(int side, int material) const {
     Flesh f(bones.scale);
     f.on(bones.arms[side].person_from_upper, rest.upper_arm(side));
-    f.lobe({0, 0.02, 0}, {0, kUpperArm_m, 0}, 0.049, 0.039);
+    if (!looks.long_sleeves) f.lobe({0, 0.02, 0}, {0, kUpperArm_m, 0}, 0.049, 0.039);
     f.on(bones.arms[side].person_from_lower, rest.forearm(side));
-    f.lobe({0, 0, 0}, {0, 0.09, -0.003}, 0.038, 0.0415, {.soft_m = 0.025});
-    f.lobe({0, 0.09, -0.003}, {0, kForearm_m, 0}, 0.0405, 0.0255, {.soft_m = 0.03});
+    if (!looks.long_sleeves) f.lobe({0, 0, 0}, {0, 0.09, -0.003}, 0.038, 0.0415, {.soft_m = 0.025});
+    const double bare_m = looks.long_sleeves ? 0.17 : 0.09;
+    f.lobe({0, bare_m, -0.003}, {0, kForearm_m, 0}, looks.long_sleeves ? 0.034 : 0.0405, 0.0255, {.soft_m = 0.03});
     hand(f, side);
     put(f, material);
   }
@@ -239,14 +240,16 @@ Looks looks_of(std::uint32_t seed) {
                                              {Texture::kPlaid, 0x9c2f2c, 0x1f2a38, 0xe8d9b0, 0.075, true},
                                              {Texture::kStripes, 0x2f7a64, 0xece2c6, 0x1f3a44, 0.07, false}}};
   const Shirt& shirt = kShirts[style % 4];
-  const Color skin = srgb(kSkin[(style / 2 + style) % 4]), hair = srgb(kHair[(style * 3) % 4]);
+  const std::uint32_t tone = (style / 2 + style) % 4;
+  const Color skin = srgb(kSkin[tone]), hair = srgb(tone >= 2 ? kHair[1 + style % 2] : kHair[(style * 3) % 4]);
+  const Color lips{0.78F * skin.r, 0.42F * skin.g, 0.42F * skin.b};
   Looks out;
   out.scale = random.uniform(0.975, 1.025);
   out.long_sleeves = shirt.long_sleeves;
   out.long_hair = style % 4 == 1;
   const double beard = style % 4 == 2 ? 0.8 : 0.0;
   // The beard's strength travels as the face's scale.
-  out.face = {.texture = Texture::kFace, .a = skin, .b = hair, .c = srgb(0xb5564e), .scale_m = beard, .gloss = 0.05};
+  out.face = {.texture = Texture::kFace, .a = skin, .b = hair, .c = lips, .scale_m = beard, .gloss = 0.05};
   out.skin = {.texture = Texture::kSkin, .a = skin, .gloss = 0.05};
   out.hair = {.texture = Texture::kHair, .a = hair, .b = 0.4 * hair, .gloss = 0.12};
   out.shirt = {.texture = shirt.texture, .a = srgb(shirt.a), .b = srgb(shirt.b), .c = srgb(shirt.c), .scale_m = shirt.scale_m};

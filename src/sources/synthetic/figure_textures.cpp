@@ -8,7 +8,7 @@
 namespace duo::synthetic {
 namespace {
 
-constexpr Color kWhite{0.78F, 0.76F, 0.73F}, kBlack{0.02F, 0.015F, 0.012F};
+constexpr Color kWhite{0.62F, 0.6F, 0.57F}, kBlack{0.02F, 0.015F, 0.012F};
 
 // 1 where the signed distance to an edge is below 0, as soft as the sample is large.
 double inside(double distance_m, double footprint_m) {
@@ -120,8 +120,10 @@ Color stripes(const Material& m, const TexturePoint& at) {
 
 Color plaid(const Material& m, const TexturePoint& at) {
   const double f = at.footprint_m, w = m.scale_m;
-  // Around a limb or body x and z together run along the cloth.
-  const double across = at.p_m.x + (at.p_m.x < 0 ? -0.7 : 0.7) * at.p_m.z;
+  // The way around the body or a sleeve, by the angle that a square has instead of a circle.
+  const bool sleeve = std::abs(at.p_m.x) > 0.22;
+  const double x = at.p_m.x - (sleeve ? (at.p_m.x < 0 ? -0.3 : 0.3) : 0), z = at.p_m.z;
+  const double across = (sleeve ? 0.09 : 0.26) * x / (std::abs(x) + std::abs(z) + 1e-6);
   const auto bar = [&](double v) { return inside((std::abs(fract(v / w) - 0.5) - 0.23) * w, f); };
   const auto line = [&](double v) { return inside(std::abs(fract(v / w + 0.5) - 0.5) * w - 0.0035, f); };
   Color c = mixed(m.a, m.b, 0.5 * bar(across) + 0.45 * bar(at.p_m.y));

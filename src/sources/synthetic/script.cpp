@@ -28,8 +28,8 @@ Act wave() {
 }
 
 Act reach() {
-  const ArmPose near{{-0.04, 0.11, -0.49}, {0.7, 1, 0}, {0, 0.2, -1}, {0, -0.9, 0}, 8};
-  const ArmPose held{{0.02, 0.13, -0.46}, {0.7, 1, 0}, {0, 0.2, -1}, {0, -0.9, 0}, 8};
+  const ArmPose near{{-0.04, 0.17, -0.47}, {0.7, 1, 0}, {0, 0.2, -1}, {0, -0.9, 0}, 8};
+  const ArmPose held{{0.02, 0.19, -0.44}, {0.7, 1, 0}, {0, 0.2, -1}, {0, -0.9, 0}, 8};
   return {"reach", from_rest({{1.1, near, -10}, {1.5, held, -8}}, 2.5)};
 }
 
@@ -127,7 +127,7 @@ Script::Moment Script::at(double t_s) const {
   // Positive about y turns z towards x: the right side, at -x, comes forward.
   pose.twist_degrees = 1.2 * swing(6, 0.19) - outwards(arm_) * now.twist_degrees;
   pose.look_degrees = 4 * swing(7, 0.21) + 1.5 * swing(8, 0.47);
-  pose.nod_degrees = 2 * swing(9, 0.33);
+  pose.nod_degrees = 5 + 2 * swing(9, 0.33);  // the cameras stand lower than the eyes
   for (int side = 0; side < 2; ++side) {
     ArmPose& arm = pose.arms[side];
     arm = side == arm_ ? now.arm : kHanging;
