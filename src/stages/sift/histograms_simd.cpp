@@ -33,7 +33,7 @@ void sift_directions(const sift::Gradient& gradient, const sift::Neighbourhood& 
     const float *magnitude = gradient.magnitude.row(y), *turns = gradient.turns.row(y);
     const auto y_weight = hn::Set(d, around.y_weight[y - around.y_begin]);
     for (int x = around.x_begin; x < around.x_end; x += n) {
-      const auto weight = hn::LoadU(d, around.x_weight + x - around.x_begin);
+      const auto weight = hn::LoadU(d, around.x_weight + (x - around.x_begin));
       hn::Store(rounded(hn::Mul(hn::Mul(hn::LoadU(d, magnitude + x), y_weight), weight)), di, value);
       hn::Store(rounded(hn::Mul(hn::LoadU(d, turns + x), hn::Set(d, static_cast<float>(sift::kDirections)))), di, direction);
       const int count = std::min(n, around.x_end - x);
@@ -93,7 +93,7 @@ void sift_cells(const sift::Gradient& gradient, const sift::Neighbourhood& aroun
       const auto one = hn::Set(d, 1.0f);
       const auto to_c = hn::Sub(column, hn::ConvertTo(d, c)), to_r = hn::Sub(row, hn::ConvertTo(d, r));
       const auto to_d = hn::Sub(direction, hn::ConvertTo(d, o));
-      const auto weight = hn::LoadU(d, around.x_weight + x - around.x_begin);
+      const auto weight = hn::LoadU(d, around.x_weight + (x - around.x_begin));
       const auto value = hn::IfThenElseZero(inside, hn::Mul(hn::Mul(hn::LoadU(d, magnitude + x), y_weight), weight));
       for (int i = 0; i < 4; ++i) {
         const auto in_row = hn::Mul(value, (i & 2) ? to_r : hn::Sub(one, to_r));
