@@ -1,0 +1,63 @@
+// What two pixels are compared by in semi-global matching, as plain planes of bytes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "duoptic/image.h"
+
+namespace duo {
+
+/// One view. Census: bit k of both bytes tells whether neighbour k is darker than the pixel. Channels (gray, Sobel x, Sobel y):
+/// the value, and the interval that it and the half-way values towards its four neighbours span.
+///
+/// Shape   all H x W; outside (255 = cannot be compared) may be empty. Each row continues by its edge values for as many
+/// columns
+///         as PlaneImages::pad says on the left, and 64 on the right
+struct MatchPlanes {
+  static constexpr int kChannels = 3;
+  std::array<View<const std::uint8_t>, 2> census;
+  std::array<View<const std::uint8_t>, kChannels> value, low, high;
+  View<const std::uint8_t> outside;
+  Size size() const { return value[0].size(); }
+};
+
+/// The memory of one view's planes.
+struct PlaneImages {
+  static constexpr int kPadRight = 64;
+  Size size;
+  int pad = 0;  // columns before x = 0
+  std::array<Image<std::uint8_t>, 2> census;
+  std::array<Image<std::uint8_t>, MatchPlanes::kChannels> value, low, high;
+  Image<std::uint8_t> outside;
+
+  PlaneImages() = default;
+  PlaneImages(Size size_, int pad_, bool masked) : size(size_), pad(pad_) {
+    const Size padded{pad + size.width + kPadRight, size.height};
+    for (auto& plane : census) plane = Image<std::uint8_t>(padded);
+    for (auto* planes : {&value, &low, &high})
+      for (auto& plane : *planes) plane = Image<std::uint8_t>(padded);
+    if (masked) outside = Image<std::uint8_t>(padded);
+  }
+
+  MatchPlanes planes() const {
+    const auto inner = [this](const Image<std::uint8_t>& plane) {
+      return plane.empty() ? View<const std::uint8_t>{} : plane.view().crop(0, pad, size);
+    };
+    MatchPlanes out;
+    for (std::size_t i = 0; i < census.size(); ++i) out.census[i] = inner(census[i]);
+    for (std::size_t i = 0; i < value.size(); ++i)
+      out.value[i] = inner(value[i]), out.low[i] = inner(low[i]), out.high[i] = inner(high[i]);
+    out.outside = inner(outside);
+    return out;
+  }
+
+  /// Continues row y of a plane by its edge values.
+  void continue_row(Image<std::uint8_t>& plane, int y) const {
+    std::uint8_t* row = plane.row(y);
+    std::memset(row, row[pad], static_cast<std::size_t>(pad));
+    std::memset(row + pad + size.width, row[pad + size.width - 1], kPadRight);
+  }
+};
+
+}  // namespace duo

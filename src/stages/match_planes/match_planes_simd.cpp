@@ -1,0 +1,133 @@
+// Lanes are x. The gray plane is written first, edges continued, so that nothing below needs a border case along x.
+
+#include <algorithm>
+
+#include "core/check.h"
+#include "stages/match_planes/match_planes.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "stages/match_planes/match_planes_simd.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, as Highway asks.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace duo::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// `rows` are the gray rows y - 2 .. y + 2 at x = 0; writes up to a vector beyond w.
+void census_row(const std::uint8_t* const* rows, int w, std::uint8_t* low, std::uint8_t* high) {
+  const hn::CappedTag<std::uint8_t, PlaneImages::kPadRight> d;
+  for (int x = 0; x < w; x += static_cast<int>(hn::Lanes(d))) {
+    const auto centre = hn::LoadU(d, rows[2] + x);
+    for (int byte = 0; byte < 2; ++byte) {
+      auto bits = hn::Zero(d);
+      for (int k = 0; k < 8; ++k) {
+        const int* at = kCensus[8 * byte + k];
+        const auto neighbour = hn::LoadU(d, rows[2 + at[1]] + x + at[0]);
+        // There is no byte "less" on every instruction set: the neighbour is darker where the greater of both is not it.
+        const auto darker = hn::Ne(hn::Max(neighbour, centre), neighbour);
+        bits = hn::Or(bits, hn::IfThenElseZero(darker, hn::Set(d, static_cast<std::uint8_t>(1 << k))));
+      }
+      hn::StoreU(bits, d, (byte == 0 ? low : high) + x);
+    }
+  }
+}
+
+void sobel_row(const std::uint8_t* up, const std::uint8_t* mid, const std::uint8_t* down, int w, std::uint8_t* out_x,
+               std::uint8_t* out_y) {
+  const hn::CappedTag<std::int16_t, PlaneImages::kPadRight / 2> d16;
+  const hn::Rebind<std::uint8_t, decltype(d16)> d8;
+  const auto load = [&](const std::uint8_t* p) HWY_ATTR { return hn::PromoteTo(d16, hn::LoadU(d8, p)); };
+  const auto store = [&](auto sum, std::uint8_t* p) HWY_ATTR {
+    const auto clipped = hn::Min(hn::Max(hn::ShiftRight<2>(sum), hn::Set(d16, -63)), hn::Set(d16, 63));
+    hn::StoreU(hn::DemoteTo(d8, hn::Add(clipped, hn::Set(d16, 128))), d8, p);
+  };
+  for (int x = 0; x < w; x += static_cast<int>(hn::Lanes(d16))) {
+    const auto ul = load(up + x - 1), ur = load(up + x + 1), dl = load(down + x - 1), dr = load(down + x + 1);
+    const auto diagonal = hn::Sub(dr, ul), other = hn::Sub(dl, ur);  // both gradients are made of these two
+    store(hn::Add(hn::Sub(diagonal, other), hn::ShiftLeft<1>(hn::Sub(load(mid + x + 1), load(mid + x - 1)))), out_x + x);
+    store(hn::Add(hn::Add(diagonal, other), hn::ShiftLeft<1>(hn::Sub(load(down + x), load(up + x)))), out_y + x);
+  }
+}
+
+void interval_row(const std::uint8_t* up, const std::uint8_t* mid, const std::uint8_t* down, int w, std::uint8_t* low,
+                  std::uint8_t* high) {
+  const hn::CappedTag<std::uint8_t, PlaneImages::kPadRight> d;
+  for (int x = 0; x < w; x += static_cast<int>(hn::Lanes(d))) {
+    const auto v = hn::LoadU(d, mid + x);
+    auto lo = v, hi = v;
+    for (const std::uint8_t* neighbour : {mid - 1, mid + 1, up, down}) {
+      const auto half = hn::AverageRound(v, hn::LoadU(d, neighbour + x));
+      lo = hn::Min(lo, half);
+      hi = hn::Max(hi, half);
+    }
+    hn::StoreU(lo, d, low + x);
+    hn::StoreU(hi, d, high + x);
+  }
+}
+
+}  // namespace duo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace duo {
+HWY_EXPORT(census_row);
+HWY_EXPORT(sobel_row);
+HWY_EXPORT(interval_row);
+
+namespace simd {
+namespace {
+
+void outside_row(View<const std::uint8_t> inside, int y, std::uint8_t* out) {
+  const int w = inside.width(), h = inside.height();
+  const std::uint8_t *up = inside.row(std::max(y - 1, 0)), *mid = inside.row(y), *down = inside.row(std::min(y + 1, h - 1));
+  const auto column = [&](int x) { return up[x] & mid[x] & down[x]; };
+  int before = column(0), here = before;
+  for (int x = 0; x < w; ++x) {
+    const int after = column(std::min(x + 1, w - 1));
+    out[x] = (before & here & after) != 0 ? 0 : 255;
+    before = here;
+    here = after;
+  }
+}
+
+}  // namespace
+
+void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
+  DUO_CHECK(gray.size() == out.size && inside.empty() == out.outside.empty() && out.pad >= PlaneImages::kPadRight);
+  const int w = gray.width(), h = gray.height(), pad = out.pad;
+  const auto row = [&](Image<std::uint8_t>& plane, int y) { return plane.row(std::clamp(y, 0, h - 1)) + pad; };
+  pool.rows(h, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y) {
+      std::copy_n(gray.row(y), w, row(out.value[0], y));
+      out.continue_row(out.value[0], y);
+      if (inside.empty()) continue;
+      outside_row(inside, y, row(out.outside, y));
+      out.continue_row(out.outside, y);
+    }
+  });
+  pool.rows(h, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y) {
+      const std::uint8_t* rows[5];
+      for (int i = 0; i < 5; ++i) rows[i] = row(out.value[0], y + i - 2);
+      HWY_DYNAMIC_DISPATCH(census_row)(rows, w, row(out.census[0], y), row(out.census[1], y));
+      HWY_DYNAMIC_DISPATCH(sobel_row)(rows[1], rows[2], rows[3], w, row(out.value[1], y), row(out.value[2], y));
+      for (Image<std::uint8_t>* plane : {&out.census[0], &out.census[1], &out.value[1], &out.value[2]})
+        out.continue_row(*plane, y);
+    }
+  });
+  pool.rows(h, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y)
+      for (std::size_t c = 0; c < MatchPlanes::kChannels; ++c) {
+        HWY_DYNAMIC_DISPATCH(interval_row)
+        (row(out.value[c], y - 1), row(out.value[c], y), row(out.value[c], y + 1), w, row(out.low[c], y), row(out.high[c], y));
+        out.continue_row(out.low[c], y);
+        out.continue_row(out.high[c], y);
+      }
+  });
+}
+
+}  // namespace simd
+}  // namespace duo
+#endif

@@ -1,0 +1,67 @@
+#include "stages/match_planes/match_planes.h"
+
+#include "tests/agree.h"
+
+namespace duo {
+namespace {
+
+// By hand, at (1, 1) of a ramp along x of 10 a column: Sobel x is 4 * 20 / 4 = 20 inside, Sobel y 0; the half-way values are 5
+// beside the value. Census: exactly the neighbours to the left are darker.
+TEST(MatchPlanes, HandWorked) {
+  Image<std::uint8_t> gray({5, 3});
+  for (int y = 0; y < 3; ++y)
+    for (int x = 0; x < 5; ++x) gray.at(y, x) = static_cast<std::uint8_t>(10 * x);
+  PlaneImages out(gray.size(), 0, false);
+  ref::match_planes(gray, {}, out);
+  EXPECT_EQ(out.value[0].at(1, 2), 20);
+  EXPECT_EQ(out.value[1].at(1, 2), 128 + 20);
+  EXPECT_EQ(out.value[1].at(1, 0), 128 + 10);  // the edge continues: half the slope
+  EXPECT_EQ(out.value[2].at(1, 2), 128);
+  EXPECT_EQ(out.low[0].at(1, 2), 15);
+  EXPECT_EQ(out.high[0].at(1, 2), 25);
+  for (int k = 0; k < 16; ++k)
+    EXPECT_EQ(out.census[static_cast<std::size_t>(k / 8)].at(1, 2) >> (k % 8) & 1, kCensus[k][0] < 0 ? 1 : 0) << k;
+}
+
+TEST(MatchPlanes, OutsideReachesOnePixel) {
+  const auto gray = test::constant<std::uint8_t>({6, 5}, 7);
+  auto inside = test::constant<std::uint8_t>({6, 5}, 255);
+  inside.at(2, 1) = 0;
+  PlaneImages out(gray.size(), 0, true);
+  ref::match_planes(gray, inside, out);
+  for (int y = 0; y < 5; ++y)
+    for (int x = 0; x < 6; ++x)
+      EXPECT_EQ(out.outside.at(y, x), std::abs(y - 2) <= 1 && std::abs(x - 1) <= 1 ? 255 : 0) << y << " " << x;
+}
+
+TEST(MatchPlanes, SimdAgrees) {
+  std::mt19937 rng(8);
+  Pool two(2);
+  for (const Size size : test::awkward_sizes())
+    for (const test::Fill how : test::kFills)
+      for (const bool masked : {false, true}) {
+        test::Tight<std::uint8_t> gray(size), inside(size);
+        test::fill(gray.view, how, rng);
+        for (int y = 0; y < size.height; ++y)
+          for (int x = 0; x < size.width; ++x) inside.view.at(y, x) = rng() % 9 ? 255 : 0;
+        const View<const std::uint8_t> mask = masked ? View<const std::uint8_t>(inside.view) : View<const std::uint8_t>{};
+        PlaneImages want(size, 64, masked);
+        ref::match_planes(gray.view, mask, want);
+        test::each_target([&](const std::string& target) {
+          PlaneImages got(size, 64, masked);
+          simd::match_planes(two, gray.view, mask, got);
+          for (std::size_t i = 0; i < 2; ++i)
+            test::expect_same<std::uint8_t>(want.census[i], got.census[i], "census " + target);
+          for (std::size_t i = 0; i < 3; ++i) {
+            test::expect_same<std::uint8_t>(want.value[i], got.value[i], "value " + target);
+            test::expect_same<std::uint8_t>(want.low[i], got.low[i], "low " + target);
+            test::expect_same<std::uint8_t>(want.high[i], got.high[i], "high " + target);
+          }
+          if (masked) test::expect_same<std::uint8_t>(want.outside, got.outside, "outside " + target);
+        });
+        if (::testing::Test::HasFailure()) return;
+      }
+}
+
+}  // namespace
+}  // namespace duo

@@ -1,0 +1,95 @@
+// Semi-global matching: pixel costs aggregated along straight paths, then a winner for each pixel of both views.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/match_planes.h"
+#include "core/pool.h"
+#include "duoptic/frame.h"
+
+namespace duo {
+
+struct SemiGlobalParams {
+  int census_truncation = 14;  // most that the census adds to a pixel's cost, 0 .. 16
+  int truncation = 8;          // most that each of the three channels adds, 0 .. 32
+  int p1 = 20;                 // penalty of a step of one disparity
+  int p2 = 45;                 // penalty of a larger step where the picture is flat, p1 .. 112
+  int p2_least = 20;           // and the least of it, p1 .. p2
+  int p2_gradient = 20;        // gray step that halves p2
+  bool diagonals = false;      // paths along diagonals, too
+  bool upward = false;         // paths from the row below, too
+
+  int paths() const { return 2 + (diagonals ? 3 : 1) * (upward ? 2 : 1); }
+  /// The penalty of a larger step between pixels whose gray values differ by `step`.
+  int p2_at(int step) const { return std::max(p2_least, p2 * p2_gradient / (p2_gradient + step)); }
+};
+
+/// Disparity of each pixel of both views.
+///
+/// Cost C(x, d) of left pixel x and right pixel x - d: min(census_truncation, differing census bits) plus, of each channel,
+/// min(truncation, distance of each value to the other's interval, the smaller one). Most there is where one of them is
+/// outside. Path cost along direction r: L(p, d) = C(p, d) + min(L'(d), L'(d - 1) + p1, L'(d + 1) + p1, min L' + P2) - min L',
+/// L' = L(p - r), and L = C where p - r is not in the picture; P2 = p2_at(gray step from p - r to p). S = min(255, sum of L
+/// over the paths): left and right along the row, down, with `diagonals` both diagonals down, with `upward` the same from
+/// below. Left winner: the least S, the smallest d of equals. Right winner of x: the least S(x + d, d), the smallest d of
+/// equals. Sub-pixel: a parabola through S at d - 1, d, d + 1, rounded half away from zero; none at the ends of the range.
+/// Margin: least S at other disparities than d - 1, d, d + 1, minus S(d), 255 taken where there is none. Small = doubtful.
+///
+/// Shape    planes and outputs H x W; left and right planes padded alike by padding() columns
+/// Units    left and right px; fine 1/16 px; margin in costs
+/// Border   edge columns of the right view continue: d may exceed x
+/// Exact    ref and simd agree bit for bit, with any number of threads. All in bytes: C <= 16 + 3 * 32 = 112, L <= C + P2 <=
+/// 224; where
+///          L + p1 would pass 255 it saturates, above min L' + P2 <= 224, and changes nothing
+/// Source   Hirschmueller, "Stereo processing by semiglobal matching and mutual information", 2008; P2 by the picture's
+/// gradient
+///          as there; that three paths of one sweep are enough is measured: see matchers/sgm/README.md
+struct SemiGlobal {
+  MatchPlanes left, right;
+  int max_disparity = 0;  // 1 .. 256
+  SemiGlobalParams params;
+};
+struct SemiGlobalMatch {
+  View<std::int16_t> left, right;
+  View<std::uint16_t> fine;
+  View<std::uint8_t> margin = {};  // may be empty = not wanted
+};
+
+namespace ref {
+/// The textbook: the whole volume, one path after the other.
+void semi_global(const SemiGlobal& in, const SemiGlobalMatch& out);
+}  // namespace ref
+
+namespace simd {
+/// The memory of the sweeps: a ring of rows of path costs (one for each thread and one more), sums and costs of a row for each
+/// thread, and with `upward` one byte for each pixel and disparity.
+class SemiGlobalScratch {
+ public:
+  SemiGlobalScratch(Size size, int max_disparity, const SemiGlobalParams& params, int threads);
+  /// Columns by which the planes must continue to the left.
+  static int padding(int max_disparity) { return (max_disparity + kGap - 1) / kGap * kGap; }
+
+  static constexpr int kGap = 64;  // bytes of 255 between the path costs of two pixels: d = -1 and d = max_disparity
+  struct Row {
+    Image<std::uint8_t> sums, costs;   // [pixel][disparity]
+    Image<std::uint8_t> path;          // [2][disparity]: path costs along the row, this pixel's and the one before it
+    Image<std::uint8_t> totals;        // S of one pixel
+    Image<std::uint8_t> best, winner;  // of the right view, padding() columns before x = 0
+  };
+  int lanes = 0;                             // disparities with those that only fill the last vector
+  int stride = 0;                            // lanes + kGap
+  std::vector<Image<std::uint8_t>> paths;    // [row of the ring]: a row for each direction, [pixel][disparity]
+  std::vector<Image<std::uint8_t>> minima;   // [row of the ring]: a row for each direction, [pixel]
+  Image<std::uint8_t> none;                  // path costs where there is no pixel before: zeros
+  std::vector<Row> rows;                     // one a thread
+  Image<std::uint8_t> upward;                // S of the paths from below
+  std::unique_ptr<std::atomic<int>[]> done;  // [row]: pixels finished
+};
+void semi_global(Pool& pool, const SemiGlobal& in, SemiGlobalScratch& scratch, const SemiGlobalMatch& out);
+}  // namespace simd
+
+}  // namespace duo
