@@ -1,0 +1,193 @@
+#include <algorithm>
+
+#include "core/check.h"
+#include "stages/weighted_median/weighted_median.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "stages/weighted_median/weighted_median_simd.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, as Highway asks.
+#include <hwy/highway.h>
+
+#ifndef DUO_WEIGHTED_MEDIAN_ONCE
+#define DUO_WEIGHTED_MEDIAN_ONCE
+namespace duo {
+constexpr int kMaxLanes = 32;  // pixels of a vector
+constexpr int kPadLeft = 32;   // a whole 64 bytes, so that centres are aligned
+constexpr int kPadRight = kMaxLanes + WeightedMedian::kRadius;
+constexpr std::int16_t kNowhere = 0x1000;  // added to a gray value makes it differ by more than 64 from any
+constexpr int kTaps = 49;
+}  // namespace duo
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace duo::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// One row of the scratch from one row of the inputs.
+void pad_row(const std::uint16_t* d_q4, const std::uint8_t* gray, int w, std::int16_t* values, std::int16_t* guide) {
+  for (int x = 0; x < w; ++x) {
+    values[x] = static_cast<std::int16_t>(d_q4[x] ^ 0x8000);
+    guide[x] = static_cast<std::int16_t>(gray[x] | (d_q4[x] == Disparity::kNone ? kNowhere : 0));
+  }
+}
+
+/// The medians of one vector of pixels.
+class Window {
+  using D = hn::CappedTag<std::int16_t, kMaxLanes>;
+  using DU = hn::RebindToUnsigned<D>;
+  using V = hn::Vec<D>;
+  using VU = hn::Vec<DU>;
+
+ public:
+  explicit Window(const simd::WeightedMedianScratch& scratch) : s_(scratch) {}
+
+  void at_row(int y) {
+    rows_ = 0;
+    for (int ty = y - WeightedMedian::kRadius; ty <= y + WeightedMedian::kRadius; ty += WeightedMedian::kStep)
+      if (ty >= 0 && ty < s_.size.height)
+        values_[rows_] = s_.values.row(ty) + kPadLeft, guide_[rows_++] = s_.guide.row(ty) + kPadLeft;
+    centre_values_ = s_.values.row(y) + kPadLeft;
+    centre_guide_ = s_.guide.row(y) + kPadLeft;
+  }
+
+  /// Pixels x and following; those that are not `smoothed` keep their value.
+  VU median(int x, hn::Mask<D> smoothed) {
+    const D d;
+    const DU du;
+    V lowest, highest, weight;
+    weigh(x, lowest, highest, weight);
+    const auto bias = hn::Set(du, 0x8000);
+    const auto own = hn::Xor(hn::BitCast(du, hn::LoadU(d, centre_values_ + x)), bias);
+    const auto moves = hn::And(smoothed, hn::Gt(weight, hn::Zero(d)));
+    auto low = hn::IfThenElse(hn::RebindMask(du, moves), hn::Xor(hn::BitCast(du, lowest), bias), own);
+    auto high = hn::IfThenElse(hn::RebindMask(du, moves), hn::Xor(hn::BitCast(du, highest), bias), own);
+    // The most that is less than half of all weight; where nothing moves, more than there is.
+    const auto under_half =
+        hn::IfThenElse(moves, hn::ShiftRight<1>(hn::Sub(weight, hn::Set(d, 1))), hn::Set(d, std::int16_t{0x7FFF}));
+    const auto one = hn::Set(du, 1);
+    while (!hn::AllTrue(du, hn::Eq(low, high))) {
+      const auto middle = hn::AverageRound(low, high);  // > low unless low == high
+      const auto below = hn::RebindMask(du, hn::Gt(weight_below(x, hn::BitCast(d, hn::Xor(middle, bias))), under_half));
+      // A lane that has its answer has middle == low == high, and less than half below.
+      high = hn::IfThenElse(below, hn::Sub(middle, one), high);
+      low = hn::IfThenElse(below, low, middle);
+    }
+    return low;
+  }
+
+ private:
+  /// Weights of all taps, the range of those that have any, the sum.
+  HWY_INLINE void weigh(int x, V& lowest, V& highest, V& sum) {
+    const D d;
+    const hn::Repartition<std::uint8_t, D> d8;
+    const auto table = hn::LoadDup128(d8, WeightedMedian::kWeights.data());
+    const auto centre = hn::And(hn::LoadU(d, centre_guide_ + x), hn::Set(d, 0xFF));
+    const auto limit = hn::Set(d, 64), entries = hn::Set(d, 15);
+    const auto no_high_byte = hn::Set(d, static_cast<std::int16_t>(0x8000));  // an index that looks up 0
+    const auto none_low = hn::Set(d, std::int16_t{0x7FFF}), none_high = hn::Set(d, static_cast<std::int16_t>(0x8000));
+    lowest = none_low, highest = none_high, sum = hn::Zero(d);
+    std::int16_t* out = weights_;
+    for (int row = 0; row < rows_; ++row)
+      for (int dx = -6; dx <= 6; dx += 2, out += kMaxLanes) {
+        const auto difference = hn::Abs(hn::Sub(hn::LoadU(d, guide_[row] + x + dx), centre));
+        const auto near = hn::Lt(difference, limit);
+        const auto index = hn::Or(hn::And(hn::ShiftRight<2>(difference), entries), no_high_byte);
+        const auto weight = hn::IfThenElseZero(near, hn::BitCast(d, hn::TableLookupBytesOr0(table, hn::BitCast(d8, index))));
+        hn::Store(weight, d, out);
+        sum = hn::Add(sum, weight);
+        const auto value = hn::LoadU(d, values_[row] + x + dx);
+        lowest = hn::Min(lowest, hn::IfThenElse(near, value, none_low));
+        highest = hn::Max(highest, hn::IfThenElse(near, value, none_high));
+      }
+  }
+
+  HWY_INLINE V weight_below(int x, V limit) const {
+    const D d;
+    auto even = hn::Zero(d), odd = hn::Zero(d);
+    const std::int16_t* weight = weights_;
+    for (int row = 0; row < rows_; ++row, weight += 7 * kMaxLanes) {
+      const auto tap = [&](int i) HWY_ATTR {
+        return hn::IfThenElseZero(hn::Lt(hn::LoadU(d, values_[row] + x + 2 * i - 6), limit),
+                                  hn::Load(d, weight + i * kMaxLanes));
+      };
+      even = hn::Add(even, tap(0));
+      odd = hn::Add(odd, tap(1));
+      even = hn::Add(even, tap(2));
+      odd = hn::Add(odd, tap(3));
+      even = hn::Add(even, tap(4));
+      odd = hn::Add(odd, tap(5));
+      even = hn::Add(even, tap(6));
+    }
+    return hn::Add(even, odd);
+  }
+
+  const simd::WeightedMedianScratch& s_;
+  int rows_ = 0;
+  const std::int16_t *values_[7], *guide_[7], *centre_values_, *centre_guide_;
+  HWY_ALIGN_MAX std::int16_t weights_[kTaps * kMaxLanes];
+};
+
+void smooth_rows(const WeightedMedian& in, const simd::WeightedMedianScratch& s, View<std::uint16_t> dst, int y_begin,
+                 int y_end) {
+  const hn::CappedTag<std::int16_t, kMaxLanes> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  const hn::Rebind<std::uint8_t, decltype(d)> d8;
+  const int n = static_cast<int>(hn::Lanes(d)), w = dst.width();
+  Window window(s);
+  HWY_ALIGN_MAX std::uint16_t out[kMaxLanes];
+  HWY_ALIGN_MAX std::uint8_t tail[kMaxLanes];
+  for (int y = y_begin; y < y_end; ++y) {
+    window.at_row(y);
+    for (int x = 0; x < w; x += n) {
+      const int count = std::min(n, w - x);
+      auto smoothed = hn::Lt(hn::LoadU(d, s.guide.row(y) + kPadLeft + x), hn::Set(d, kNowhere));
+      if (!in.origin.empty()) {
+        std::fill_n(tail, kMaxLanes, std::uint8_t{0});
+        std::copy_n(in.origin.row(y) + x, count, tail);
+        smoothed = hn::Eq(hn::PromoteTo(d, hn::Load(d8, tail)), hn::Set(d, static_cast<std::int16_t>(Origin::kFilled)));
+      }
+      if (hn::AllFalse(d, smoothed)) {
+        std::copy_n(in.d_q4.row(y) + x, count, dst.row(y) + x);
+        continue;
+      }
+      hn::Store(window.median(x, smoothed), du, out);
+      std::copy_n(out, count, dst.row(y) + x);
+    }
+  }
+}
+
+}  // namespace duo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace duo {
+HWY_EXPORT(pad_row);
+HWY_EXPORT(smooth_rows);
+
+namespace simd {
+
+WeightedMedianScratch::WeightedMedianScratch(Size size_in) : size(size_in) {
+  const Size padded{kPadLeft + size.width + kPadRight, size.height};
+  values = Image<std::int16_t>(padded);
+  guide = Image<std::int16_t>(padded);
+  for (int y = 0; y < size.height; ++y) std::fill_n(guide.row(y), padded.width, kNowhere);
+}
+
+void weighted_median(Pool& pool, const WeightedMedian& in, WeightedMedianScratch& scratch, View<std::uint16_t> dst) {
+  DUO_CHECK(in.d_q4.size() == dst.size() && in.guide.size() == dst.size() &&
+            (in.origin.empty() || in.origin.size() == dst.size()));
+  DUO_CHECK(scratch.size == dst.size());
+  const auto pad = HWY_DYNAMIC_DISPATCH(pad_row);
+  pool.rows(dst.height(), [&](int begin, int end) {
+    for (int y = begin; y < end; ++y)
+      pad(in.d_q4.row(y), in.guide.row(y), dst.width(), scratch.values.row(y) + kPadLeft, scratch.guide.row(y) + kPadLeft);
+  });
+  // Windows reach six rows up and down: only now are all of them there.
+  const auto smooth = HWY_DYNAMIC_DISPATCH(smooth_rows);
+  pool.rows(dst.height(), [&](int begin, int end) { smooth(in, scratch, dst, begin, end); });
+}
+
+}  // namespace simd
+}  // namespace duo
+#endif
