@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -24,10 +25,39 @@ struct Camera {
   friend bool operator==(const Camera&, const Camera&) = default;
 };
 
+/// How far what was seen lies from what the rig predicts, root mean square over the corners of a board or the matches of a
+/// scene. Reprojection: distance from the seen place to the predicted one. Row: difference of y in the rectified pair.
+///
+/// Units   px; 0 = unknown
+struct RigErrors {
+  double left_px = 0, right_px = 0;  // reprojection, each camera
+  double row_px = 0;
+  double held_out_px = 0, held_out_row_px = 0;  // both, of views that the calibration had not seen
+  friend bool operator==(const RigErrors&, const RigErrors&) = default;
+};
+
+/// The distances at which a rig's depth is judged.
+inline constexpr std::array<double, 3> kJudgedDepths_m = {1, 1.5, 2};
+
+/// One standard deviation of what a calibration found.
+struct RigUncertainty {
+  double left_focal_px = 0, right_focal_px = 0;
+  double tilt_rad = 0, pan_rad = 0, roll_rad = 0;  // of the right camera to the left, around x, y, z
+  double baseline_m = 0;
+  std::array<double, 3> depth_m = {};  // of a point in the middle of the view, at kJudgedDepths_m
+  friend bool operator==(const RigUncertainty&, const RigUncertainty&) = default;
+};
+
 struct Rig {
   Camera left, right;
-  Rigid3 right_from_left;  // p_in_right = right_from_left * p_in_left
-  double reprojection_rms_px = 0;  // how well the calibration fitted; 0 = unknown
+  Rigid3 right_from_left;          // p_in_right = right_from_left * p_in_left
+  double reprojection_rms_px = 0;  // how well the calibration fitted, both cameras together; 0 = unknown
+  RigErrors errors;
+  std::optional<RigUncertainty> uncertainty;
+  bool metric = true;                 // false: the length of the baseline is a guess, and so is every distance
+  double time_offset_s = 0;           // a right picture was taken this much later than the left one of its pair
+  std::string left_name, right_name;  // of the cameras, as their user knows them; may be empty
+  std::string date;                   // of the calibration, ISO 8601 in UTC, like 2026-03-01T12:00:00Z; may be empty
   double baseline_m() const { return norm(right_from_left.t_m); }
 };
 
@@ -35,8 +65,8 @@ struct Rig {
 struct Rectified {
   Size size;
   double focal_px = 0, cx_px = 0, cy_px = 0, baseline_m = 0;
-  Mat3 rig_from_left;    // rotation from the raw left camera's axes to the rig frame's
-  Mat3 rig_from_right;   // likewise for the right camera; the rig frame's origin is the left camera's centre
+  Mat3 rig_from_left;   // rotation from the raw left camera's axes to the rig frame's
+  Mat3 rig_from_right;  // likewise for the right camera; the rig frame's origin is the left camera's centre
 };
 
 /// Reads a rig: our JSON, or OpenCV's YAML / JSON in any of these spellings:
@@ -50,10 +80,11 @@ Result<Rig> load_rig(const std::filesystem::path& path);
 Result<Rig> parse_rig(std::string_view text, const std::string& name);
 
 /// Refuses what cannot be a rig: non-finite numbers, focal lengths or centres that do not fit the size, rotation not
-/// orthonormal with determinant +1, baseline outside 1 cm .. 5 m, left and right swapped.
+/// orthonormal with determinant +1, baseline outside 1 cm .. 5 m, left and right swapped, errors below zero.
 Result<void> check_rig(const Rig& rig, const std::string& name);
 
-/// Writes our JSON (schema "duoptic.rig", version 1).
+/// Writes our JSON (schema "duoptic.rig", version 1). What came after the first release of version 1 (errors, uncertainty,
+/// metric, time_offset_s, names, date) may be missing in a file.
 Result<void> save_rig(const Rig& rig, const std::filesystem::path& path);
 
 }  // namespace duo

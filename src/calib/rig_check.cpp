@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "calib/rig_formats.h"
 
@@ -61,6 +62,26 @@ Result<void> check_baseline(Vec3 t_m, const std::string& name) {
   return {};
 }
 
+/// What a calibration wrote down about itself.
+Result<void> check_record(const Rig& rig, const std::string& name) {
+  const RigErrors& e = rig.errors;
+  const std::pair<const char*, double> errors[] = {{"reprojection_rms_px", rig.reprojection_rms_px},
+                                                   {"left_px", e.left_px},
+                                                   {"right_px", e.right_px},
+                                                   {"row_px", e.row_px},
+                                                   {"held_out_px", e.held_out_px},
+                                                   {"held_out_row_px", e.held_out_row_px}};
+  for (const auto& [what, value] : errors)
+    if (!(value >= 0 && std::isfinite(value))) return rig_error(name, "{} is {}; it must be 0 (unknown) or more", what, value);
+  if (!std::isfinite(rig.time_offset_s)) return rig_error(name, "the time offset is {}; calibrate again", rig.time_offset_s);
+  if (!rig.uncertainty) return {};
+  const RigUncertainty& u = *rig.uncertainty;
+  for (const double value : {u.left_focal_px, u.right_focal_px, u.tilt_rad, u.pan_rad, u.roll_rad, u.baseline_m, u.depth_m[0],
+                             u.depth_m[1], u.depth_m[2]})
+    if (!(value >= 0 && std::isfinite(value))) return rig_error(name, "an uncertainty is {}; calibrate again", value);
+  return {};
+}
+
 }  // namespace
 
 Result<void> check_rig(const Rig& rig, const std::string& name) {
@@ -71,9 +92,7 @@ Result<void> check_rig(const Rig& rig, const std::string& name) {
                      rig.left.size.height, rig.right.size.width, rig.right.size.height);
   DUO_TRY(check_rotation(rig.right_from_left.rotation, name));
   DUO_TRY(check_baseline(rig.right_from_left.t_m, name));
-  if (!(rig.reprojection_rms_px >= 0 && std::isfinite(rig.reprojection_rms_px)))
-    return rig_error(name, "reprojection_rms_px is {}; it must be 0 (unknown) or more", rig.reprojection_rms_px);
-  return {};
+  return check_record(rig, name);
 }
 
 }  // namespace duo

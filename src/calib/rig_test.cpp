@@ -19,6 +19,13 @@ Rig good_rig() {
   const double c = std::cos(0.01), s = std::sin(0.01);
   rig.right_from_left = {Mat3{{c, 0, s, 0, 1, 0, -s, 0, c}}, {-0.12, 1.0 / 300, -0.002}};
   rig.reprojection_rms_px = 0.21;
+  rig.errors = {0.2, 0.22, 0.1 / 3, 0.25, 0.07};
+  rig.uncertainty = RigUncertainty{0.7, 0.8, 1e-4, 1.0 / 3e4, 2e-5, 2e-4, {0.002, 0.0045, 0.008}};
+  rig.metric = false;
+  rig.time_offset_s = -0.004;
+  rig.left_name = "left \"webcam\"";
+  rig.right_name = "\xC3\xBC";
+  rig.date = "2026-03-01T12:00:00Z";
   return rig;
 }
 
@@ -76,7 +83,30 @@ TEST(Rig, RoundTripKeepsEveryBit) {
   EXPECT_EQ(loaded->right, rig.right);
   EXPECT_EQ(loaded->right_from_left, rig.right_from_left);
   EXPECT_EQ(loaded->reprojection_rms_px, rig.reprojection_rms_px);
+  EXPECT_EQ(loaded->errors, rig.errors);
+  EXPECT_EQ(loaded->uncertainty, rig.uncertainty);
+  EXPECT_EQ(loaded->metric, rig.metric);
+  EXPECT_EQ(loaded->time_offset_s, rig.time_offset_s);
+  EXPECT_EQ(loaded->left_name, rig.left_name);
+  EXPECT_EQ(loaded->right_name, rig.right_name);
+  EXPECT_EQ(loaded->date, rig.date);
   fs::remove(path);
+}
+
+// Files of the first release have none of what a calibration writes down about itself.
+TEST(Rig, ReadsFilesWithoutARecord) {
+  const auto loaded = parse_rig(R"({"schema": "duoptic.rig", "version": 1,
+    "left": {"width": 640, "height": 480, "fx_px": 500, "fy_px": 500, "cx_px": 320, "cy_px": 240,
+             "distortion": [0, 0, 0, 0, 0, 0, 0, 0]},
+    "right": {"width": 640, "height": 480, "fx_px": 500, "fy_px": 500, "cx_px": 320, "cy_px": 240,
+              "distortion": [0, 0, 0, 0, 0, 0, 0, 0]},
+    "right_from_left": {"rotation": [1, 0, 0, 0, 1, 0, 0, 0, 1], "t_m": [-0.1, 0, 0]}, "reprojection_rms_px": 0.2})",
+                                "old.json");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->errors, RigErrors{});
+  EXPECT_FALSE(loaded->uncertainty);
+  EXPECT_TRUE(loaded->metric);
+  EXPECT_EQ(loaded->date, "");
 }
 
 TEST(Rig, ReadsEveryYamlSpelling) {
@@ -112,6 +142,9 @@ TEST(Rig, RefusesWhatCannotBeARig) {
   expect_refused(with([&](Rig& r) { r.right_from_left.rotation(1, 1) = nan; }), "rotation holds nan");
   expect_refused(with([&](Rig& r) { r.right_from_left.t_m.z = inf; }), "translation holds inf");
   expect_refused(with([&](Rig& r) { r.reprojection_rms_px = -1; }), "reprojection_rms_px is -1");
+  expect_refused(with([&](Rig& r) { r.errors.row_px = nan; }), "row_px is nan");
+  expect_refused(with([&](Rig& r) { r.uncertainty->depth_m[2] = -1; }), "uncertainty is -1");
+  expect_refused(with([&](Rig& r) { r.time_offset_s = inf; }), "time offset is inf");
   expect_refused(with([&](Rig& r) { r.left.fx_px = -556; }), "focal length -556 px");
   expect_refused(with([&](Rig& r) { r.left.fy_px = 100; }), "focal length 100 px");
   expect_refused(with([&](Rig& r) { r.right.fx_px = 7000; }), "focal length 7000 px");
