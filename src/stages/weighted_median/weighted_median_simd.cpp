@@ -12,11 +12,13 @@
 #ifndef DUO_WEIGHTED_MEDIAN_ONCE
 #define DUO_WEIGHTED_MEDIAN_ONCE
 namespace duo {
-constexpr int kMaxLanes = 32;  // pixels of a vector
-constexpr int kPadLeft = 32;   // a whole 64 bytes, so that centres are aligned
-constexpr int kPadRight = kMaxLanes + WeightedMedian::kRadius;
-constexpr std::int16_t kNowhere = 0x1000;  // added to a gray value makes it differ by more than 64 from any
-constexpr int kTaps = 49;
+constexpr int kRadius = WeightedMedian::kRadius, kStep = WeightedMedian::kStep;
+constexpr int kSide = 2 * kRadius / kStep + 1;
+static_assert(kSide == 7, "the kernel's rows are written out");
+constexpr int kMaxLanes = 32;  // pixels of a vector, at most
+constexpr int kPadLeft = 32;   // no less than kRadius; 64 bytes, so that row starts are aligned
+constexpr int kPadRight = kMaxLanes + kRadius;
+constexpr std::int16_t kNowhere = 0x1000;  // added to a gray value, it differs from all others by more than weights reach
 }  // namespace duo
 #endif
 
@@ -44,9 +46,10 @@ class Window {
 
   void at_row(int y) {
     rows_ = 0;
-    for (int ty = y - WeightedMedian::kRadius; ty <= y + WeightedMedian::kRadius; ty += WeightedMedian::kStep)
-      if (ty >= 0 && ty < s_.size.height)
-        values_[rows_] = s_.values.row(ty) + kPadLeft, guide_[rows_++] = s_.guide.row(ty) + kPadLeft;
+    for (int ty = std::max(y % kStep, y - kRadius); ty <= std::min(y + kRadius, s_.size.height - 1); ty += kStep) {
+      values_[rows_] = s_.values.row(ty) + kPadLeft;
+      guide_[rows_++] = s_.guide.row(ty) + kPadLeft;
+    }
     centre_values_ = s_.values.row(y) + kPadLeft;
     centre_guide_ = s_.guide.row(y) + kPadLeft;
   }
@@ -89,7 +92,7 @@ class Window {
     lowest = none_low, highest = none_high, sum = hn::Zero(d);
     std::int16_t* out = weights_;
     for (int row = 0; row < rows_; ++row)
-      for (int dx = -6; dx <= 6; dx += 2, out += kMaxLanes) {
+      for (int dx = -kRadius; dx <= kRadius; dx += kStep, out += kMaxLanes) {
         const auto difference = hn::Abs(hn::Sub(hn::LoadU(d, guide_[row] + x + dx), centre));
         const auto near = hn::Lt(difference, limit);
         const auto index = hn::Or(hn::And(hn::ShiftRight<2>(difference), entries), no_high_byte);
@@ -104,28 +107,24 @@ class Window {
 
   HWY_INLINE V weight_below(int x, V limit) const {
     const D d;
-    auto even = hn::Zero(d), odd = hn::Zero(d);
+    auto sum = hn::Zero(d);
     const std::int16_t* weight = weights_;
-    for (int row = 0; row < rows_; ++row, weight += 7 * kMaxLanes) {
+    for (int row = 0; row < rows_; ++row, weight += kSide * kMaxLanes) {
+      const std::int16_t* values = values_[row] + x - kRadius;
       const auto tap = [&](int i) HWY_ATTR {
-        return hn::IfThenElseZero(hn::Lt(hn::LoadU(d, values_[row] + x + 2 * i - 6), limit),
-                                  hn::Load(d, weight + i * kMaxLanes));
+        return hn::IfThenElseZero(hn::Lt(hn::LoadU(d, values + i * kStep), limit), hn::Load(d, weight + i * kMaxLanes));
       };
-      even = hn::Add(even, tap(0));
-      odd = hn::Add(odd, tap(1));
-      even = hn::Add(even, tap(2));
-      odd = hn::Add(odd, tap(3));
-      even = hn::Add(even, tap(4));
-      odd = hn::Add(odd, tap(5));
-      even = hn::Add(even, tap(6));
+      // Three sums that do not wait for each other.
+      const auto left = hn::Add(hn::Add(tap(0), tap(1)), tap(2)), right = hn::Add(hn::Add(tap(4), tap(5)), tap(6));
+      sum = hn::Add(sum, hn::Add(hn::Add(left, right), tap(3)));
     }
-    return hn::Add(even, odd);
+    return sum;
   }
 
   const simd::WeightedMedianScratch& s_;
   int rows_ = 0;
-  const std::int16_t *values_[7], *guide_[7], *centre_values_, *centre_guide_;
-  HWY_ALIGN_MAX std::int16_t weights_[kTaps * kMaxLanes];
+  const std::int16_t *values_[kSide], *guide_[kSide], *centre_values_, *centre_guide_;
+  HWY_ALIGN_MAX std::int16_t weights_[kSide * kSide * kMaxLanes];
 };
 
 void smooth_rows(const WeightedMedian& in, const simd::WeightedMedianScratch& s, View<std::uint16_t> dst, int y_begin,
@@ -135,24 +134,30 @@ void smooth_rows(const WeightedMedian& in, const simd::WeightedMedianScratch& s,
   const hn::Rebind<std::uint8_t, decltype(d)> d8;
   const int n = static_cast<int>(hn::Lanes(d)), w = dst.width();
   Window window(s);
-  HWY_ALIGN_MAX std::uint16_t out[kMaxLanes];
-  HWY_ALIGN_MAX std::uint8_t tail[kMaxLanes];
+  // The last vector of a row reaches past the end of views.
+  HWY_ALIGN_MAX std::uint8_t last_origins[kMaxLanes] = {};
+  HWY_ALIGN_MAX std::uint16_t last_results[kMaxLanes];
   for (int y = y_begin; y < y_end; ++y) {
     window.at_row(y);
     for (int x = 0; x < w; x += n) {
       const int count = std::min(n, w - x);
       auto smoothed = hn::Lt(hn::LoadU(d, s.guide.row(y) + kPadLeft + x), hn::Set(d, kNowhere));
       if (!in.origin.empty()) {
-        std::fill_n(tail, kMaxLanes, std::uint8_t{0});
-        std::copy_n(in.origin.row(y) + x, count, tail);
-        smoothed = hn::Eq(hn::PromoteTo(d, hn::Load(d8, tail)), hn::Set(d, static_cast<std::int16_t>(Origin::kFilled)));
+        const std::uint8_t* origins = in.origin.row(y) + x;
+        if (count < n) std::copy_n(origins, count, last_origins), origins = last_origins;
+        smoothed = hn::Eq(hn::PromoteTo(d, hn::LoadU(d8, origins)), hn::Set(d, static_cast<std::int16_t>(Origin::kFilled)));
       }
       if (hn::AllFalse(d, smoothed)) {
         std::copy_n(in.d_q4.row(y) + x, count, dst.row(y) + x);
         continue;
       }
-      hn::Store(window.median(x, smoothed), du, out);
-      std::copy_n(out, count, dst.row(y) + x);
+      const auto result = window.median(x, smoothed);
+      if (count == n) {
+        hn::StoreU(result, du, dst.row(y) + x);
+      } else {
+        hn::Store(result, du, last_results);
+        std::copy_n(last_results, count, dst.row(y) + x);
+      }
     }
   }
 }
