@@ -1,7 +1,12 @@
 # Explicit names, no glob: what is not listed is not built.
 set(dir ${PROJECT_SOURCE_DIR}/src/calib)
-target_sources(duoptic PRIVATE ${dir}/rectification.cpp ${dir}/rig.cpp ${dir}/rig_check.cpp ${dir}/rig_json.cpp
-  ${dir}/rig_opencv.cpp)
+target_sources(duoptic PRIVATE ${dir}/opencv_rectified.cpp ${dir}/rectification.cpp ${dir}/rig.cpp ${dir}/rig_check.cpp
+  ${dir}/rig_files.cpp ${dir}/rig_json.cpp ${dir}/rig_kalibr.cpp ${dir}/rig_opencv.cpp ${dir}/rig_ros.cpp ${dir}/rig_yaml.cpp
+  ${dir}/yaml_reader.cpp)
 duoptic_test(calib/clips ${dir}/clips_test.cpp)
 duoptic_test(calib/rectification ${dir}/rectification_test.cpp)
 duoptic_test(calib/rig ${dir}/rig_test.cpp)
+duoptic_test(calib/rig_files ${dir}/rig_files_test.cpp)
+if(DUO_TESTS)
+  target_link_libraries(calib_rig_files_test PRIVATE opencv::core)  # reads what we write for it
+endif()

@@ -9,8 +9,6 @@
 namespace duo {
 namespace {
 
-// Far above any rig (2 to 4 kB), low enough that no parser can be kept busy or made to recurse without end.
-constexpr std::size_t kMaxBytes = 1 << 20;
 constexpr int kMaxDepth = 64;
 
 /// Depth of brackets, strings not told apart: a rig file has no brackets in strings.
@@ -24,13 +22,9 @@ int bracket_depth(std::string_view text) {
 }
 
 Result<Rig> translate(std::string_view text, const std::string& name) {
-  const std::size_t start = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");  // spaces and a byte order mark
-  if (start == text.npos) return rig_error(name, "the file is empty; give a calibration of both cameras");
-  text.remove_prefix(start);
-  if (text.size() > kMaxBytes || bracket_depth(text) > kMaxDepth)
-    return rig_error(name, "this is no rig file (larger than 1 MiB or nested deeper than {} levels)", kMaxDepth);
+  DUO_TRY_ASSIGN(text, rig_text(text, name));
   if (text.front() == '<') return rig_error(name, "XML is not read; save the calibration as .yml or .json");
-  if (text.front() != '{') return rig_from_opencv_yaml(text, name);
+  if (text.front() != '{') return rig_from_yaml(text, name);
 
   const auto json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (json.is_discarded()) return rig_error(name, "the JSON is broken or cut short; write the file again");
@@ -39,6 +33,15 @@ Result<Rig> translate(std::string_view text, const std::string& name) {
 
 }  // namespace
 
+Result<std::string_view> rig_text(std::string_view text, const std::string& name) {
+  const std::size_t start = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");  // spaces and a byte order mark
+  if (start == text.npos) return rig_error(name, "the file is empty; give a calibration of both cameras");
+  text.remove_prefix(start);
+  if (text.size() > kMaxRigBytes || bracket_depth(text) > kMaxDepth)
+    return rig_error(name, "this is no rig file (larger than 1 MiB or nested deeper than {} levels)", kMaxDepth);
+  return text;
+}
+
 Result<Rig> parse_rig(std::string_view text, const std::string& name) {
   DUO_TRY_ASSIGN(Rig rig, translate(text, name));
   DUO_TRY(check_rig(rig, name));
@@ -46,7 +49,7 @@ Result<Rig> parse_rig(std::string_view text, const std::string& name) {
 }
 
 Result<Rig> load_rig(const std::filesystem::path& path) {
-  DUO_TRY_ASSIGN(const std::string text, read_file(path, kMaxBytes, "rig"));
+  DUO_TRY_ASSIGN(const std::string text, read_file(path, kMaxRigBytes, "rig"));
   return parse_rig(text, path.string());
 }
 

@@ -1,6 +1,4 @@
 // OpenCV's calibration files. Both syntaxes are first reduced to named lists of numbers; one reader serves them all.
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,14 +6,12 @@
 #include <vector>
 
 #include "calib/rig_formats.h"
+#include "calib/yaml_reader.h"
 
 namespace duo {
 namespace {
 
 using Numbers = std::map<std::string, std::vector<double>, std::less<>>;
-
-// OpenCV writes up to 14 coefficients; more numbers than this are not part of a rig.
-constexpr std::size_t kMaxNumbers = 16;
 
 struct Spelling {
   const char *left_matrix, *left_distortion, *right_matrix, *right_distortion;
@@ -34,54 +30,27 @@ bool is_known(std::string_view key) {
 }
 
 // A list holds numbers, or rows of numbers as people write them by hand.
-template <class Node, class ToNumber>
-bool append_numbers(const Node& node, int depth, const ToNumber& to_number, std::vector<double>& out) {
-  if (double number; to_number(node, number)) {
-    out.push_back(number);
+bool append_numbers(const nlohmann::json& node, int depth, std::vector<double>& out) {
+  if (node.is_number()) {
+    out.push_back(node.get<double>());
     return out.size() <= kMaxNumbers;
   }
-  if (depth == 2 || !to_number.is_list(node) || node.size() > kMaxNumbers) return false;
-  return std::all_of(node.begin(), node.end(),
-                     [&](const auto& item) { return append_numbers(Node(item), depth + 1, to_number, out); });
+  if (depth == 2 || !node.is_array() || node.size() > kMaxNumbers) return false;
+  return std::all_of(node.begin(), node.end(), [&](const auto& item) { return append_numbers(item, depth + 1, out); });
 }
-
-struct YamlNumber {
-  bool operator()(const YAML::Node& node, double& out) const {
-    return node.IsScalar() && YAML::convert<double>::decode(node, out);
-  }
-  bool is_list(const YAML::Node& node) const { return node.IsSequence(); }
-};
-
-struct JsonNumber {
-  bool operator()(const nlohmann::json& node, double& out) const {
-    if (node.is_number()) out = node.get<double>();
-    return node.is_number();
-  }
-  bool is_list(const nlohmann::json& node) const { return node.is_array(); }
-};
 
 Error not_numbers(const std::string& key, const std::string& name) {
   return rig_error(name, "key '{}' is not a matrix of at most {} numbers", key, kMaxNumbers);
 }
 
-Result<Numbers> numbers_from_yaml(std::string_view text, const std::string& name) {
-  // "%YAML:1.0" is OpenCV's own header and no YAML directive.
-  if (text.substr(0, 5) == "%YAML") text.remove_prefix(std::min(text.find('\n'), text.size()));
-  try {
-    const YAML::Node root = YAML::Load(std::string(text));
-    if (!root.IsMap()) return rig_error(name, "this is neither JSON nor OpenCV YAML; give a calibration file");
-    Numbers numbers;
-    for (const auto& entry : root) {
-      if (!entry.first.IsScalar() || !is_known(entry.first.Scalar())) continue;
-      const std::string& key = entry.first.Scalar();
-      const YAML::Node& value = entry.second;
-      const YAML::Node data = value.IsMap() ? value["data"] : value;
-      if (!data.IsDefined() || !append_numbers(data, 0, YamlNumber{}, numbers[key])) return not_numbers(key, name);
-    }
-    return numbers;
-  } catch (const YAML::Exception& e) {
-    return rig_error(name, "the YAML is broken or cut short at line {}; write the file again", e.mark.line + 2);
+Result<Numbers> numbers_from_yaml(const YAML::Node& map, const std::string& name) {
+  Numbers numbers;
+  for (const auto& entry : map) {
+    if (!entry.first.IsScalar() || !is_known(entry.first.Scalar())) continue;
+    const std::string& key = entry.first.Scalar();
+    if (!read_numbers(entry.second, numbers[key])) return not_numbers(key, name);
   }
+  return numbers;
 }
 
 Result<Numbers> numbers_from_json(const nlohmann::json& json, const std::string& name) {
@@ -89,7 +58,7 @@ Result<Numbers> numbers_from_json(const nlohmann::json& json, const std::string&
   for (const auto& [key, value] : json.items()) {
     if (!is_known(key)) continue;
     const bool matrix = value.is_object();
-    if ((matrix && !value.contains("data")) || !append_numbers(matrix ? value["data"] : value, 0, JsonNumber{}, numbers[key]))
+    if ((matrix && !value.contains("data")) || !append_numbers(matrix ? value["data"] : value, 0, numbers[key]))
       return not_numbers(key, name);
   }
   return numbers;
@@ -182,8 +151,8 @@ Result<Rig> rig_from_opencv_json(const nlohmann::json& json, const std::string& 
   return rig_from_numbers(numbers, name);
 }
 
-Result<Rig> rig_from_opencv_yaml(std::string_view text, const std::string& name) {
-  DUO_TRY_ASSIGN(const Numbers numbers, numbers_from_yaml(text, name));
+Result<Rig> rig_from_opencv_yaml(const YAML::Node& map, const std::string& name) {
+  DUO_TRY_ASSIGN(const Numbers numbers, numbers_from_yaml(map, name));
   return rig_from_numbers(numbers, name);
 }
 

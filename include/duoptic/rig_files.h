@@ -1,0 +1,36 @@
+// Rig files of other programs, read and written: docs/rig_files.md has every field.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "duoptic/rig.h"
+
+namespace duo {
+
+enum class RigFormat : std::uint8_t {
+  kOpencv,  // M1 D1 M2 D2 R T R1 R2 P1 P2 Q, YAML or JSON
+  kRos,     // a camera_info YAML of each camera
+  kKalibr,  // camchain.yaml, pinhole-radtan
+};
+
+/// Reads a rig from all that load_rig() reads, from a folder that holds ROS's left.yaml and right.yaml, or from the two
+/// camera_info files `file` and `right`.
+///
+/// Errors  those of load_rig(); a second file that is no camera_info
+Result<Rig> import_rig(const std::filesystem::path& file, const std::filesystem::path& right = {});
+
+struct RigExport {
+  std::vector<std::filesystem::path> files;
+  double lens_error_px =
+      0;  // how far at most the format's lens lies from the rig's, inside the picture; only Kalibr's can differ
+};
+
+/// Writes a rig for another program. kOpencv: .yml, .yaml or .json says which. kRos: a .yml or .yaml holds both cameras, one
+/// document each; any other path is a folder that gets left.yaml and right.yaml, as ROS wants them.
+///
+/// Errors  not a format for this ending; a rig that is not metric; those of check_rig() and of writing
+Result<RigExport> export_rig(const Rig& rig, RigFormat format, const std::filesystem::path& path);
+
+}  // namespace duo

@@ -1,0 +1,148 @@
+#include "duoptic/rig_files.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core/persistence.hpp>
+#include <span>
+#include <system_error>
+
+#include "calib/opencv_rectified.h"
+#include "calib/rig_formats.h"
+#include "core/file.h"
+#include "core/lens.h"
+
+namespace duo {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_yaml(const fs::path& path) { return path.extension() == ".yml" || path.extension() == ".yaml"; }
+
+// --- OpenCV ---------------------------------------------------------------------------------------------------------------
+
+void put(cv::FileStorage& storage, const char* key, int rows, std::span<const double> numbers) {
+  storage << key << cv::Mat(rows, static_cast<int>(numbers.size()) / rows, CV_64F, const_cast<double*>(numbers.data()));
+}
+
+void put(cv::FileStorage& storage, const char* matrix_key, const char* distortion_key, const Camera& c) {
+  put(storage, matrix_key, 3, std::array{c.fx_px, 0.0, c.cx_px, 0.0, c.fy_px, c.cy_px, 0.0, 0.0, 1.0});
+  put(storage, distortion_key, 1, std::span(c.distortion).first(has_denominator(c) ? 8 : 5));
+}
+
+std::string opencv_text(const Rig& rig, const fs::path& path) {
+  const OpencvRectified rectified = opencv_rectified(rig);
+  const Vec3 t = rig.right_from_left.t_m;
+  cv::FileStorage storage(is_yaml(path) ? ".yml" : ".json", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+  storage << "image_width" << rig.left.size.width << "image_height" << rig.left.size.height;
+  put(storage, "M1", "D1", rig.left);
+  put(storage, "M2", "D2", rig.right);
+  put(storage, "R", 3, rig.right_from_left.rotation.m);
+  put(storage, "T", 3, std::array{t.x, t.y, t.z});
+  put(storage, "R1", 3, rectified.r1.m);
+  put(storage, "R2", 3, rectified.r2.m);
+  put(storage, "P1", 3, rectified.p1);
+  put(storage, "P2", 3, rectified.p2);
+  put(storage, "Q", 4, rectified.q);
+  return storage.releaseAndGetString();
+}
+
+// --- ROS ------------------------------------------------------------------------------------------------------------------
+
+Result<RigExport> write_ros(const Rig& rig, const fs::path& path) {
+  const OpencvRectified rectified = opencv_rectified(rig);
+  const auto name = [](const std::string& known, const char* side) { return known.empty() ? side : known; };
+  const std::string left = ros_from_camera(rig.left, name(rig.left_name, "left"), rectified.r1, rectified.p1),
+                    right = ros_from_camera(rig.right, name(rig.right_name, "right"), rectified.r2, rectified.p2);
+  if (is_yaml(path)) {
+    DUO_TRY(write_file(path, left + "---\n" + right));
+    return RigExport{{path}};
+  }
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) return Error{ErrorCode::kWriteFailed, fmt::format("cannot write to {}: {}", path.string(), error.message())};
+  DUO_TRY(write_file(path / "left.yaml", left));
+  DUO_TRY(write_file(path / "right.yaml", right));
+  return RigExport{{path / "left.yaml", path / "right.yaml"}};
+}
+
+// --- Kalibr ---------------------------------------------------------------------------------------------------------------
+
+struct Radtan {
+  std::array<double, 4> k;
+  double worst_px;
+};
+
+/// The four coefficients that come nearest to a lens over its picture: the model is linear in them.
+Radtan radtan_of(const Camera& camera) {
+  constexpr int kSteps = 40;
+  const auto& d = camera.distortion;
+  if (d[4] == 0 && !has_denominator(camera)) return {{d[0], d[1], d[2], d[3]}, 0};
+  const Lens lens(camera);
+  std::vector<std::array<double, 5>> rows;  // of the equations, the right side last
+  for (int i = 0; i <= kSteps; ++i)
+    for (int j = 0; j <= kSteps; ++j) {
+      const Vec2 pixel = {(camera.size.width - 1.0) * j / kSteps, (camera.size.height - 1.0) * i / kSteps};
+      const auto ray = lens.ray_of(pixel);
+      if (!ray) continue;
+      const double x = ray->x, y = ray->y, r2 = x * x + y * y;
+      rows.push_back({x * r2, x * r2 * r2, 2 * x * y, r2 + 2 * x * x, (pixel.x - camera.cx_px) / camera.fx_px - x});
+      rows.push_back({y * r2, y * r2 * r2, r2 + 2 * y * y, 2 * x * y, (pixel.y - camera.cy_px) / camera.fy_px - y});
+    }
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 5, Eigen::RowMajor>> m(
+      rows.data()->data(), static_cast<Eigen::Index>(rows.size()), 5);
+  const Eigen::Vector4d k = m.leftCols<4>().colPivHouseholderQr().solve(m.col(4));
+  const double worst = (m.leftCols<4>() * k - m.col(4)).cwiseAbs().maxCoeff();
+  return {{k[0], k[1], k[2], k[3]}, worst * std::max(camera.fx_px, camera.fy_px)};
+}
+
+Result<RigExport> write_kalibr(const Rig& rig, const fs::path& path) {
+  const Radtan left = radtan_of(rig.left), right = radtan_of(rig.right);
+  DUO_TRY(write_file(path, kalibr_from_rig(rig, {left.k, right.k})));
+  return RigExport{{path}, std::max(left.worst_px, right.worst_px)};
+}
+
+Error wrong_ending(const fs::path& path, const char* what) {
+  return {ErrorCode::kBadInput, fmt::format("cannot export to '{}': {}", path.string(), what)};
+}
+
+}  // namespace
+
+Result<Rig> import_rig(const fs::path& file, const fs::path& right) {
+  std::error_code ignored;
+  if (right.empty() && !fs::is_directory(file, ignored)) return load_rig(file);
+  const fs::path left_file = right.empty() ? file / "left.yaml" : file,
+                 right_file = right.empty() ? file / "right.yaml" : right;
+  DUO_TRY_ASSIGN(const std::string left_text, read_file(left_file, kMaxRigBytes, "rig"));
+  DUO_TRY_ASSIGN(const std::string right_text, read_file(right_file, kMaxRigBytes, "rig"));
+  DUO_TRY_ASSIGN(Rig rig, rig_from_ros_texts(left_text, right_text, left_file.string(), right_file.string()));
+  DUO_TRY(check_rig(rig, file.string()));
+  return rig;
+}
+
+Result<RigExport> export_rig(const Rig& rig, RigFormat format, const fs::path& path) {
+  DUO_TRY(check_rig(rig, path.string()));
+  if (!rig.metric)
+    return rig_error(path.string(),
+                     "it is not metric, and other programs' files cannot say so; calibrate with a board or give "
+                     "intrinsics and baseline to --from-scene");
+  try {
+    switch (format) {
+      case RigFormat::kOpencv:
+        if (!is_yaml(path) && path.extension() != ".json")
+          return wrong_ending(path, "OpenCV's files end with .yml, .yaml or .json");
+        DUO_TRY(write_file(path, opencv_text(rig, path)));
+        return RigExport{{path}};
+      case RigFormat::kRos:
+        return write_ros(rig, path);
+      case RigFormat::kKalibr:
+        if (!is_yaml(path)) return wrong_ending(path, "Kalibr's files end with .yaml or .yml");
+        return write_kalibr(rig, path);
+    }
+  } catch (const std::exception& e) {  // OpenCV's
+    return rig_error(path.string(), "OpenCV cannot rectify it ({})", e.what());
+  }
+  return wrong_ending(path, "unknown format");
+}
+
+}  // namespace duo

@@ -1,0 +1,83 @@
+// YAML files come from several programs; the keys tell which.
+#include <algorithm>
+
+#include "calib/rig_formats.h"
+#include "calib/yaml_reader.h"
+
+namespace duo {
+namespace {
+
+struct Document {
+  std::string text;
+  int first_line = 1;
+};
+
+// Parted here, by their lines of dashes: yaml-cpp's own way to read several documents can go on for ever.
+std::vector<Document> part(std::string_view text) {
+  std::vector<Document> out(1);
+  for (int line_number = 1; !text.empty(); ++line_number) {
+    const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end);
+    if (line.substr(0, 3) == "---" && line.find_first_not_of(" \t\r\n", 3) == line.npos)
+      out.push_back({{}, line_number + 1});
+    else
+      out.back().text += line.substr(0, 5) == "%YAML" ? "\n" : line;  // OpenCV's own header is no YAML directive
+  }
+  return out;
+}
+
+/// Empty documents are left out.
+Result<std::vector<YAML::Node>> documents_of(std::string_view text, const std::string& name) {
+  std::vector<YAML::Node> maps;
+  for (const Document& document : part(text)) {
+    try {
+      const YAML::Node node = YAML::Load(document.text);
+      if (!node.IsNull()) maps.push_back(node);
+    } catch (const YAML::Exception& e) {
+      return rig_error(name, "the YAML is broken or cut short at line {}; write the file again",
+                       e.mark.line + document.first_line);
+    }
+  }
+  if (maps.empty() || !std::all_of(maps.begin(), maps.end(), [](const YAML::Node& node) { return node.IsMap(); }))
+    return rig_error(name, "this is neither JSON nor OpenCV YAML, ROS camera_info or Kalibr camchain; give a calibration file");
+  return maps;
+}
+
+/// Nodes that look sound can still throw when they are asked for what they are not.
+template <class Read>
+Result<Rig> guarded(const std::string& name, Read&& read) {
+  try {
+    return read();
+  } catch (const YAML::Exception& e) {
+    return rig_error(name, "the YAML is broken ({}); write the file again", e.msg);
+  }
+}
+
+}  // namespace
+
+Result<Rig> rig_from_yaml(std::string_view text, const std::string& name) {
+  DUO_TRY_ASSIGN(const std::vector<YAML::Node> documents, documents_of(text, name));
+  const YAML::Node& first = documents.front();
+  return guarded(name, [&]() -> Result<Rig> {
+    if (first["cam0"].IsDefined()) return rig_from_kalibr(first, name);
+    if (!is_ros_camera(first)) return rig_from_opencv_yaml(first, name);
+    if (documents.size() == 2) return rig_from_ros(first, documents[1], name);
+    return rig_error(name, "this is the camera_info of one camera; give both files: duoptic rig import LEFT RIGHT");
+  });
+}
+
+Result<Rig> rig_from_ros_texts(std::string_view left, std::string_view right, const std::string& left_name,
+                               const std::string& right_name) {
+  DUO_TRY_ASSIGN(left, rig_text(left, left_name));
+  DUO_TRY_ASSIGN(right, rig_text(right, right_name));
+  DUO_TRY_ASSIGN(const std::vector<YAML::Node> a, documents_of(left, left_name));
+  DUO_TRY_ASSIGN(const std::vector<YAML::Node> b, documents_of(right, right_name));
+  return guarded(right_name, [&]() -> Result<Rig> {
+    if (!is_ros_camera(a.front())) return rig_error(left_name, "two files are a pair of ROS camera_info; this is none");
+    if (!is_ros_camera(b.front())) return rig_error(right_name, "two files are a pair of ROS camera_info; this is none");
+    return rig_from_ros(a.front(), b.front(), left_name);
+  });
+}
+
+}  // namespace duo

@@ -1,0 +1,65 @@
+#include "calib/yaml_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace duo {
+namespace {
+
+bool append_numbers(const YAML::Node& node, int depth, std::vector<double>& out) {
+  if (double number; node.IsScalar() && YAML::convert<double>::decode(node, number)) {
+    out.push_back(number);
+    return out.size() <= kMaxNumbers;
+  }
+  if (depth == 2 || !node.IsSequence() || node.size() > kMaxNumbers) return false;
+  return std::all_of(node.begin(), node.end(), [&](const YAML::Node& item) { return append_numbers(item, depth + 1, out); });
+}
+
+}  // namespace
+
+bool read_numbers(const YAML::Node& node, std::vector<double>& out) {
+  const YAML::Node data = node.IsMap() ? node["data"] : node;
+  return data.IsDefined() && append_numbers(data, 0, out);
+}
+
+std::string YamlReader::key_of(std::initializer_list<const char*> spellings) const {
+  for (const char* key : spellings)
+    if (map_[key].IsDefined()) return key;
+  return {};
+}
+
+std::vector<double> YamlReader::numbers(const std::string& key, std::initializer_list<std::size_t> counts,
+                                        const std::string& advice) {
+  std::vector<double> out;
+  if (!map_[key].IsDefined()) {
+    complain(fmt::format("key '{}' is missing; {}", key, advice));
+  } else if (!read_numbers(map_[key], out)) {
+    complain(fmt::format("key '{}' is not a list of at most {} numbers", key, kMaxNumbers));
+  } else if (std::find(counts.begin(), counts.end(), out.size()) == counts.end()) {
+    complain(fmt::format("key '{}' has {} numbers; {}", key, out.size(), advice));
+  } else {
+    return out;
+  }
+  return {};
+}
+
+int YamlReader::whole(const std::string& key, double value) {
+  if (value == std::floor(value) && std::abs(value) <= 1 << 20) return static_cast<int>(value);
+  complain(fmt::format("key '{}' is {}, not a size in pixels", key, value));
+  return 0;
+}
+
+std::string YamlReader::text(const std::string& key, const std::string& advice) {
+  const YAML::Node node = map_[key];
+  if (node.IsDefined() && node.IsScalar()) return node.Scalar();
+  complain(fmt::format("key '{}' is missing or no text; {}", key, advice));
+  return {};
+}
+
+void YamlReader::complain(const std::string& what) {
+  if (wrong_.empty()) wrong_ = whose_ + what;
+}
+
+}  // namespace duo

@@ -1,0 +1,13 @@
+// Any bytes as a pair of ROS camera_info files, parted by the first line of dashes.
+#include <cstdint>
+#include <string_view>
+
+#include "tests/fuzz/accepted_rig.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const std::size_t end = std::min(text.find("---\n"), size);
+  const auto rig = duo::rig_from_ros_texts(text.substr(0, end), text.substr(std::min(end + 4, size)), "left", "right");
+  if (rig && duo::check_rig(*rig, "fuzz")) duo::fuzz::check_accepted(*rig);
+  return 0;
+}
