@@ -1,12 +1,16 @@
 # Explicit names, no glob: what is not listed is not built.
 set(dir ${PROJECT_SOURCE_DIR}/src/calib)
-target_sources(duoptic PRIVATE ${dir}/opencv_rectified.cpp ${dir}/rectification.cpp ${dir}/rig.cpp ${dir}/rig_check.cpp
-  ${dir}/rig_files.cpp ${dir}/rig_json.cpp ${dir}/rig_kalibr.cpp ${dir}/rig_opencv.cpp ${dir}/rig_ros.cpp ${dir}/rig_yaml.cpp
-  ${dir}/yaml_reader.cpp)
+target_sources(duoptic PRIVATE ${dir}/align_match.cpp ${dir}/opencv_rectified.cpp ${dir}/rectification.cpp ${dir}/rig.cpp
+  ${dir}/rig_check.cpp ${dir}/rig_doubts.cpp ${dir}/rig_files.cpp ${dir}/rig_health.cpp ${dir}/rig_json.cpp
+  ${dir}/rig_kalibr.cpp ${dir}/rig_opencv.cpp ${dir}/rig_ros.cpp ${dir}/rig_yaml.cpp ${dir}/scene_matches.cpp
+  ${dir}/scene_pose.cpp ${dir}/yaml_reader.cpp)
+duoptic_test(calib/align_match ${dir}/align_match_test.cpp)
 duoptic_test(calib/clips ${dir}/clips_test.cpp)
 duoptic_test(calib/rectification ${dir}/rectification_test.cpp)
 duoptic_test(calib/rig ${dir}/rig_test.cpp)
 duoptic_test(calib/rig_files ${dir}/rig_files_test.cpp)
+duoptic_test(calib/rig_health ${dir}/rig_health_test.cpp)
+duoptic_test(calib/scene_clips ${dir}/scene_clips_test.cpp)
 if(DUO_TESTS)
   target_link_libraries(calib_rig_files_test PRIVATE opencv::core)  # reads what we write for it
 endif()

@@ -1,0 +1,54 @@
+// A rig from the scenes of the rendered clips, and a turned one put right by them; the true rigs are known.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+
+#include "duoptic/rig_health.h"
+#include "tests/turned_rig.h"
+
+namespace duo {
+namespace {
+
+using namespace test;
+
+class Clips : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    const char* data = std::getenv("DUOPTIC_DATA");
+    folder_ = std::filesystem::path(data ? data : "../shared/data") / "sequences" / GetParam();
+    if (!std::filesystem::exists(folder_)) GTEST_SKIP() << "skipped: no data";
+  }
+  std::unique_ptr<PairSource> pairs() const {
+    auto out = open_pairs(folder_ / "left.avi", folder_ / "right.avi");
+    EXPECT_TRUE(out);
+    return std::move(*out);
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_P(Clips, FromSceneRefineAndCheck) {
+  const auto truth = load_rig(folder_ / "calibration_truth.yml");
+  ASSERT_TRUE(truth);
+  const auto found = rig_from_scene(*truth, truth->baseline_m(), *pairs(), 2);
+  ASSERT_TRUE(found) << found.error().what;
+  const Vec3 wrong = wrong_turn_deg(found->rig, *truth);
+  const double row_px = true_row_error_px(found->rig, *truth);
+  EXPECT_LT(row_px, 0.5);
+  EXPECT_LT(std::max(std::abs(wrong.x), std::abs(wrong.z)), 0.05);
+  std::printf("%s from the scene: rows %.3f px, tilt %.4f pan %.4f roll %.4f degrees\n", GetParam(), row_px, wrong.x, wrong.y,
+              wrong.z);
+
+  for (const Mat3& by : {turn(1, 0, 0), turn(0, 1, 0), turn(0, 0, 1)}) {
+    const auto refined = refine_rig(right_turned(*truth, by), *pairs(), 2);
+    ASSERT_TRUE(refined) << refined.error().what;
+    EXPECT_EQ(refined->before.verdict, RigVerdict::kRecalibrate);
+    EXPECT_EQ(refined->after.verdict, RigVerdict::kGood);
+    EXPECT_LT(true_row_error_px(refined->rig, *truth), 0.5);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Rendered, Clips, testing::Values("dev_easy_wave", "dev_hard_beige"));
+
+}  // namespace
+}  // namespace duo

@@ -1,0 +1,39 @@
+// Points of a scene that both cameras see: what a rig can be judged and put right by without a board.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/lens.h"
+#include "duoptic/source.h"
+
+namespace duo {
+
+/// One point in both raw pictures.
+struct SceneMatch {
+  Vec2 left_px, right_px;
+};
+
+struct SceneMatches {
+  Size size;
+  int pairs = 0;     // that were looked at
+  bool cut = false;  // the stream was cut short; its whole pairs were used
+  std::vector<SceneMatch> matches;
+};
+
+/// SIFT points of pairs spread evenly over a stream, matched by their descriptors alone: no place, row or rig is assumed, so
+/// that some matches are wrong. Where one part of the picture has far more of them than others, the best of its own are kept.
+///
+/// Errors  those of the stream
+Result<SceneMatches> match_scene(PairSource& pairs, int threads);
+
+/// The cell of a picture parted into columns and rows that a place lies in, row by row.
+int cell_of(Vec2 at_px, Size size, int columns, int rows);
+
+/// Which thirds of the left picture have no points, in words; empty when all have some.
+std::string missing_parts(const std::vector<SceneMatch>& matches, Size size);
+
+/// How much of the left picture has points, 0 .. 1, in cells of an eighth by a sixth.
+double covered_share(const std::vector<SceneMatch>& matches, Size size);
+
+}  // namespace duo
