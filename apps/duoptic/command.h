@@ -36,6 +36,7 @@ Command add_eval_clip(CLI::App& eval);
 Command add_bench(CLI::App& app);
 Command add_demo(CLI::App& app);
 Command add_synth(CLI::App& app);
+Command add_rig(CLI::App& app);
 Command add_version(CLI::App& app);
 
 /// The options that say which engine runs with which matcher.

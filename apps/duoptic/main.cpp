@@ -56,7 +56,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(kFooter);
   const std::vector<Command> commands = {add_depth(app), add_track(app), add_eval(app),   add_bench(app),
-                                         add_demo(app),  add_synth(app), add_version(app)};
+                                         add_demo(app),  add_synth(app), add_rig(app),   add_version(app)};
   const auto chosen = [&]() -> const Command* {
     for (const Command& command : commands)
       if (command.app->parsed()) return &command;
