@@ -49,7 +49,7 @@ std::optional<Arm::Candidate> Arm::best_candidate(const Scene& scene, const Pred
 }
 
 /// The hand at the far end of a region, seen from the elbow that goes with it. Scores are log likelihoods: bones, distance from
-/// the prediction, size, kind of region, length of the forearm.
+/// the prediction, size, kind of region, length of the forearm, and whether it ends there or goes on behind something.
 std::optional<Arm::Candidate> Arm::candidate(const Grid& grid, const Region& region, const Prediction& predicted, bool gated,
                                              bool by_skin) {
   constexpr double kMostReach = 1.15;                              // of the bones' lengths
@@ -61,6 +61,7 @@ std::optional<Arm::Candidate> Arm::candidate(const Grid& grid, const Region& reg
   const Gate gate{predicted.hand, params_.hand_gate_m + params_.hand_gate_growth_m_s * unseen_s};
   const double elbow_sigma_m = params_.elbow_prior_m + params_.elbow_prior_growth_m_s * seconds(elbow_.unseen) +
                                0.25 * norm(hand_.step) + (hand_.seen() ? 0 : params_.elbow_prior_hidden_hand_m);
+  const Vec3 back = torso_.rig_from_torso().rotation * Vec3{0, 0, 1};
   const ElbowFinder elbows(grid, silhouette_, lengths_, params_);
 
   Candidate out;
@@ -70,7 +71,7 @@ std::optional<Arm::Candidate> Arm::candidate(const Grid& grid, const Region& reg
         hands_.find(grid, silhouette_, region.cells, elbow, lengths_.fore_m, hand_centre_m_, gated ? &gate : nullptr, params_);
     if (!hand || hand->area_m2 < params_.least_hand_m2) return {};
     out.hand = *hand;
-    out.elbow = elbows.between(shoulder_.p, out.hand.p, {predicted.elbow, elbow_sigma_m});
+    out.elbow = elbows.between(shoulder_.p, out.hand.p, {predicted.elbow, elbow_sigma_m}, back);
     elbow = out.elbow.p;
   }
 
@@ -85,11 +86,12 @@ std::optional<Arm::Candidate> Arm::candidate(const Grid& grid, const Region& reg
   if (hand_.unseen > kLongUnseen && out.elbow.score < kUnseenElbowScore - forgiven) return {};
 
   constexpr double kMostJump = 6, kHandM2 = 0.008, kSize = 1.5, kUngated = 0.5, kLimb = 0.7, kMostlySkin = 0.6,
-                   kForePerM = 0.5 / 0.03;
+                   kForePerM = 0.5 / 0.03, kCovered = 4;
   const double prior_m = params_.hand_prior_m + params_.hand_prior_growth_m_s * unseen_s;
   out.score = out.elbow.score - std::min(kMostJump, 0.5 * square(jump_m / prior_m)) +
               kSize * std::min(1.0, out.hand.area_m2 / kHandM2) - (gated ? 0 : kUngated) -
-              (by_skin ? 0 : kLimb + 2 * std::max(0.0, kMostlySkin - skin)) - kForePerM * std::abs(fore_m - lengths_.fore_m);
+              (by_skin ? 0 : kLimb + 2 * std::max(0.0, kMostlySkin - skin)) - kForePerM * std::abs(fore_m - lengths_.fore_m) -
+              kCovered * covered_beyond(grid, silhouette_.front, elbow, out.hand, params_);
   return out;
 }
 

@@ -101,6 +101,8 @@ TEST(ColorTable, SmoothingGoesAroundTheHueCircle) {
   EXPECT_NEAR(h[32 + 6], 1.0 / 16, 1e-6);
 }
 
+constexpr Vec3 kBack{0, 0, 1};  // the torso looks at the camera
+
 TEST(ElbowCircle, BothBonesHaveTheirLengths) {
   const Vec3 shoulder{0.1, -0.2, 2}, hand{0.3, 0.1, 1.8};
   const ElbowCircle circle(shoulder, hand, {0.30, 0.26});
@@ -132,10 +134,44 @@ TEST(ElbowFinder, FindsTheBentLimb) {
   const Lengths lengths{norm(elbow - shoulder), norm(hand - elbow)};
   const Vec3 wrong = elbow + Vec3{-0.06, 0.06, 0.02};
   const ElbowFinder finder(grid, silhouette, lengths, params);
-  const ElbowSeen seen = finder.between(shoulder, hand, {wrong, 0.2});
+  const ElbowSeen seen = finder.between(shoulder, hand, {wrong, 0.2}, kBack);
   expect_near(seen.p, elbow, 0.025);
   EXPECT_GT(seen.score, 2);
-  EXPECT_LT(finder.between(shoulder, grid.camera.point({20, 60}, 1.02), {wrong, 0.2}).score, 0);  // nothing there
+  EXPECT_LT(finder.between(shoulder, grid.camera.point({20, 60}, 1.02), {wrong, 0.2}, kBack).score, 0);  // nothing there
+}
+
+// Without depth the whole circle is equally likely.
+TEST(ElbowFinder, TheElbowOfAHangingArmIsBehindIt) {
+  Grid grid(geometry());
+  const Silhouette silhouette(grid);
+  const Vec3 shoulder = grid.camera.point({40, 15}, 1), hand = grid.camera.point({40, 65}, 1);
+  const Lengths lengths{0.27, 0.25};
+  const Params params;
+  const ElbowFinder finder(grid, silhouette, lengths, params);
+  const ElbowPrior anywhere{0.5 * (shoulder + hand), 10};
+  EXPECT_GT(finder.between(shoulder, hand, anywhere, kBack).p.z, 1.02);
+  EXPECT_LT(finder.between(shoulder, hand, anywhere, Vec3{0, 0, -1}).p.z, 0.98);
+}
+
+TEST(ElbowFinder, TheElbowOfAnArmHeldOutSags) {
+  Grid grid(geometry());
+  const Silhouette silhouette(grid);
+  const Vec3 shoulder = grid.camera.point({20, 40}, 1), hand = grid.camera.point({70, 40}, 1);
+  const Lengths lengths{0.27, 0.25};
+  const Params params;
+  const ElbowFinder finder(grid, silhouette, lengths, params);
+  EXPECT_GT(finder.between(shoulder, hand, {0.5 * (shoulder + hand), 10}, kBack).p.y, shoulder.y + 0.02);
+}
+
+TEST(HandFinder, AForearmThatGoesOnBehindSomethingIsCovered) {
+  Grid grid(geometry());
+  std::vector<std::uint8_t> front(static_cast<std::size_t>(grid.size()));
+  for (int y = 30; y < 52; ++y) fill_row(grid, y, 66, 90, 0.8F, front);  // 66: where the skin ends
+  const Vec3 elbow = grid.camera.point({30, 40.5}, 1);
+  HandSeen hand{grid.camera.point({56, 40.5}, 1), 0.355};
+  EXPECT_EQ(covered_beyond(grid, front, elbow, hand, Params{}), 1);
+  for (int y = 30; y < 52; ++y) fill_row(grid, y, 66, 90, 1.2F, front);  // the body behind the hand
+  EXPECT_EQ(covered_beyond(grid, front, elbow, hand, Params{}), 0);
 }
 
 TEST(HandFinder, FarEndLessTheHandsLength) {

@@ -64,6 +64,15 @@ double prior_of(const ElbowPrior& prior, Vec3 p) {
   return -0.5 * dot(q, q) / (prior.sigma_m * prior.sigma_m);
 }
 
+/// Log likelihood of an elbow `aside_m` off the way from shoulder to hand: it sags, and where the hand hangs it points
+/// backwards. Stereo cannot tell on which side of an almost straight arm its elbow is.
+double ease_of(Vec3 way, Vec3 aside_m, Vec3 back) {
+  constexpr double kMost = 1.5, kScaleM = 0.03;
+  const Vec3 n = normalized(way);
+  const Vec3 easy = Vec3{0, 1, 0} + std::max(0.0, n.y) * back;
+  return kMost * std::tanh(dot(aside_m, easy - dot(easy, n) * n) / kScaleM);
+}
+
 /// Two directions across a unit vector.
 void across(Vec3 n, Vec3& e1, Vec3& e2) {
   e1 = normalized(cross(n, std::abs(n.y) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}));
@@ -118,7 +127,7 @@ double ElbowFinder::fore(Vec3 elbow, Vec3 hand) const {
   return bone_evidence(grid_, silhouette_, {elbow, hand, params_.fore_radius_m, 0.12, 0.75, 5}, params_.disparity_sigma_px);
 }
 
-ElbowSeen ElbowFinder::between(Vec3 shoulder, Vec3 hand, const ElbowPrior& prior) const {
+ElbowSeen ElbowFinder::between(Vec3 shoulder, Vec3 hand, const ElbowPrior& prior, Vec3 back) const {
   constexpr double kEvidence = 3;  // weight of a bone: its samples are not independent
   constexpr double kOtherLength = 0.15, kStretchPerM = 20;
   constexpr double kStepM = 0.02;  // along the circle
@@ -129,7 +138,8 @@ ElbowSeen ElbowFinder::between(Vec3 shoulder, Vec3 hand, const ElbowPrior& prior
     const int steps = std::clamp(static_cast<int>(2 * std::numbers::pi * circle.radius_m / kStepM), 1, 48);
     for (int k = 0; k < steps; ++k) {
       const Vec3 elbow = circle.at(2 * std::numbers::pi * k / steps);
-      const double before = prior_of(prior, elbow) - (scale != 1 ? kOtherLength : 0) - kStretchPerM * circle.stretch_m;
+      const double before = prior_of(prior, elbow) + ease_of(hand - shoulder, elbow - circle.centre, back) -
+                            (scale != 1 ? kOtherLength : 0) - kStretchPerM * circle.stretch_m;
       if (before + 2 * kEvidence < hypotheses.best() - kHopeless) continue;
       hypotheses.add(elbow, before + kEvidence * (upper(shoulder, elbow, 5) + fore(elbow, hand)));
     }

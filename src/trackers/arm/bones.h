@@ -41,8 +41,8 @@ class ElbowFinder {
  public:
   ElbowFinder(const Grid& grid, const Silhouette& silhouette, const Lengths& lengths, const Params& params)
       : grid_(grid), silhouette_(silhouette), lengths_(lengths), params_(params) {}
-  /// On the circle between shoulder and hand.
-  ElbowSeen between(Vec3 shoulder, Vec3 hand, const ElbowPrior& prior) const;
+  /// On the circle between shoulder and hand; `back` is away from where the torso looks.
+  ElbowSeen between(Vec3 shoulder, Vec3 hand, const ElbowPrior& prior, Vec3 back) const;
   /// On a cap around the predicted direction, while the hand is hidden.
   ElbowSeen alone(Vec3 shoulder, const ElbowPrior& prior) const;
 

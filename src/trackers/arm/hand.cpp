@@ -88,4 +88,21 @@ std::optional<HandSeen> HandFinder::find(const Grid& grid, const Silhouette& sil
   return out;
 }
 
+double covered_beyond(const Grid& grid, const std::vector<std::uint8_t>& front, Vec3 elbow, const HandSeen& hand,
+                      const Params& params) {
+  constexpr double kNearerM = 0.05;
+  const Vec3 way = normalized(hand.p - elbow), side = normalized(cross(way, hand.p));
+  int covered = 0, all = 0;
+  for (const double beyond_m : {0.02, 0.035, 0.05})
+    for (const double aside_m : {-0.02, 0.0, 0.02}) {
+      const Vec3 p = elbow + (hand.tip_m + beyond_m) * way + aside_m * side;
+      const int i = grid.cell_of(p);
+      if (i < 0) continue;
+      ++all;
+      covered += grid.known(i) && front[static_cast<std::size_t>(i)] &&
+                 grid.z(i) < p.z - kNearerM - grid.z_sigma_m(p.z, params.disparity_sigma_px);
+    }
+  return all > 0 ? covered / static_cast<double>(all) : 0;
+}
+
 }  // namespace duo::arm

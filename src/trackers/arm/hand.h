@@ -46,4 +46,9 @@ class HandFinder {
   std::vector<double> depths_m_;
 };
 
+/// Share of the places just beyond the fingertips where something nearer stands: there the arm goes on behind it, and what
+/// looks like a hand is the forearm.
+double covered_beyond(const Grid& grid, const std::vector<std::uint8_t>& front, Vec3 elbow, const HandSeen& hand,
+                      const Params& params);
+
 }  // namespace duo::arm
