@@ -1,4 +1,4 @@
-// A rig from any scene, without a board: duoptic calibrate --from-scene.
+// A rig from any scene, without a board.
 #pragma once
 
 #include <optional>

@@ -83,6 +83,25 @@ TEST_F(RigTool, RefinesWhatWasNudged) {
   EXPECT_EQ(run("check refined.json left.png right.png").exit, 0);
 }
 
+TEST_F(RigTool, FindsARigInAScene) {
+  const Ended metric = run("from-scene left.png right.png --intrinsics nudged.json --baseline-m 0.2 -o found.json");
+  EXPECT_EQ(metric.exit, 0) << metric.err;
+  const auto found = load_rig(at("found.json"));
+  ASSERT_TRUE(found) << found.error().what;
+  EXPECT_TRUE(found->metric);
+  EXPECT_NEAR(found->baseline_m(), 0.2, 1e-12);
+  EXPECT_EQ(found->date.size(), 20u) << found->date;
+  EXPECT_EQ(run("check found.json left.png right.png").exit, 0);
+
+  const Ended guess = run("from-scene left.png right.png -o guess.json");
+  EXPECT_EQ(guess.exit, 0) << guess.err;
+  EXPECT_NE(guess.err.find("not metric"), std::string::npos) << guess.err;
+  const auto not_metric = load_rig(at("guess.json"));
+  ASSERT_TRUE(not_metric);
+  EXPECT_FALSE(not_metric->metric);
+  expect_failure("export guess.json --to ros -o out.json", kInput, "not metric");
+}
+
 TEST_F(RigTool, ExportsAndImports) {
   for (const char* to :
        {"opencv -o there.yml", "opencv -o there.json", "ros -o there.yaml", "ros -o there", "kalibr -o there.yaml"}) {
@@ -117,6 +136,10 @@ TEST_F(RigTool, SaysInOneLineWhatIsWrong) {
   expect_failure("check rig.json left.png", kInput, "240x360");
   expect_failure("refine rig.json right.png left.png -o out.json", kInput, "left and right are swapped");
   expect_failure("refine rig.json left.png rig.json -o out.json", kInput, "rig.json");
+  expect_failure("from-scene right.png left.png --intrinsics rig.json -o out.json", kInput, "left and right are swapped");
+  expect_failure("from-scene left.png left.png --intrinsics rig.json -o out.json", kInput, "the same picture");
+  expect_failure("from-scene left.png right.png --baseline-m 127 -o out.json", kUsage, "baseline-m");
+  expect_failure("from-scene left.png right.png --intrinsics guess.json -o out.json", kInput, "guess");
   expect_failure("refine rig.json", kUsage, "LEFT");
   expect_failure("", kUsage, "subcommand");
 }
