@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-
 namespace duo {
 namespace {
 
@@ -11,6 +10,22 @@ constexpr Denoise kRawDenoise = Denoise::kGaussian;
 
 Error bad(std::string what) { return {ErrorCode::kBadInput, std::move(what)}; }
 
+Result<std::variant<PyramidParams, SgmParams>> matcher_params(const Setup& setup) {
+  std::variant<PyramidParams, SgmParams> out;
+  if (setup.matcher == "sgm") {
+    if (setup.max_disparity > SgmParams::kMaxDisparity)
+      return bad(fmt::format(
+          "prepare the engine: matcher sgm searches at most {} disparities, not {}; lower it, or choose matcher pyramid",
+          SgmParams::kMaxDisparity, setup.max_disparity));
+    DUO_TRY_ASSIGN(out, sgm_params(setup.preset, setup.parameters));
+  } else if (setup.matcher == "pyramid") {
+    DUO_TRY_ASSIGN(out, pyramid_params(setup.preset, setup.parameters));
+  } else {
+    return bad(fmt::format("prepare the engine: no matcher is called \"{}\"; choose one of: sgm, pyramid", setup.matcher));
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<Prepared> prepare_setup(const Setup& setup) {
@@ -18,13 +33,13 @@ Result<Prepared> prepare_setup(const Setup& setup) {
   out.setup = setup;
   if (setup.size.empty()) return bad("prepare the engine: the pictures have no pixels; give pictures of at least 1x1");
   if (setup.max_disparity < 1 || setup.max_disparity > Engine::kMaxDisparity)
-    return bad(fmt::format("prepare the engine: max disparity {} is not in 1 .. {}; choose the disparity of the nearest thing in px",
-                           setup.max_disparity, Engine::kMaxDisparity));
+    return bad(
+        fmt::format("prepare the engine: max disparity {} is not in 1 .. {}; choose the disparity of the nearest thing in px",
+                    setup.max_disparity, Engine::kMaxDisparity));
   if (setup.wants.depth && !setup.rig)
-    return bad("prepare the engine: depth in metres needs a rig (focal length and baseline); give one, or take disparity alone");
-  if (setup.matcher != "pyramid")
-    return bad(fmt::format("prepare the engine: no matcher is called \"{}\"; choose one of: pyramid", setup.matcher));
-  DUO_TRY_ASSIGN(out.pyramid, pyramid_params(setup.preset, setup.parameters));
+    return bad(
+        "prepare the engine: depth in metres needs a rig (focal length and baseline); give one, or take disparity alone");
+  DUO_TRY_ASSIGN(out.matcher, matcher_params(setup));
 
   const Denoise denoise = setup.denoise != Denoise::kAuto ? setup.denoise : (setup.rig ? kRawDenoise : Denoise::kNone);
   out.median = denoise == Denoise::kMedian || denoise == Denoise::kBoth;
@@ -34,9 +49,10 @@ Result<Prepared> prepare_setup(const Setup& setup) {
   if (setup.rig) {
     const Rig& rig = *setup.rig;
     if (!(rig.left.size == setup.size) || !(rig.right.size == setup.size))
-      return bad(fmt::format("prepare the engine: the rig was calibrated at {}x{}, the pictures are {}x{}; calibrate at the size in use, "
-                             "or give pictures of the rig's size",
-                             rig.left.size.width, rig.left.size.height, setup.size.width, setup.size.height));
+      return bad(fmt::format(
+          "prepare the engine: the rig was calibrated at {}x{}, the pictures are {}x{}; calibrate at the size in use, "
+          "or give pictures of the rig's size",
+          rig.left.size.width, rig.left.size.height, setup.size.width, setup.size.height));
     DUO_TRY_ASSIGN(out.rectification, make_rectification(rig, "rig"));
     out.geometry = out.rectification->geometry;
     out.size = out.geometry->size;
@@ -48,7 +64,9 @@ MatchSetup match_setup(const Prepared& prepared) {
   return {prepared.size, prepared.setup.max_disparity, prepared.rectification.has_value()};
 }
 
-float focal_baseline_px_mm(const Rectified& geometry) { return static_cast<float>(geometry.focal_px * geometry.baseline_m * 1000.0); }
+float focal_baseline_px_mm(const Rectified& geometry) {
+  return static_cast<float>(geometry.focal_px * geometry.baseline_m * 1000.0);
+}
 
 Frame make_frame(const Prepared& prepared) {
   Frame frame;

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <optional>
+#include <variant>
 
 #include "calib/rectification.h"
+#include "core/match_setup.h"
 #include "duoptic/engine.h"
-#include "matchers/pyramid/pyramid.h"
+#include "matchers/pyramid/pyramid_params.h"
+#include "matchers/sgm/sgm_params.h"
 
 namespace duo {
 
@@ -15,7 +18,7 @@ struct Prepared {
   std::optional<Rectification> rectification;
   std::optional<Rectified> geometry;
   Size size;               // of the rectified pictures
-  PyramidParams pyramid;
+  std::variant<PyramidParams, SgmParams> matcher;
 };
 
 /// Checks the setup and computes the geometry.

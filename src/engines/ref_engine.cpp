@@ -1,18 +1,21 @@
 // The reference engine: plain loops, one thread. Slow on purpose: it defines the right answer.
 
 #include <algorithm>
+#include <variant>
 
 #include "core/check.h"
 #include "core/clock.h"
 #include "engines/engines.h"
 #include "engines/prepared.h"
 #include "matchers/pyramid/pyramid.h"
+#include "matchers/sgm/sgm.h"
 #include "stages/depth/depth.h"
 #include "stages/fill/fill.h"
 #include "stages/gaussian/gaussian.h"
 #include "stages/gray/gray.h"
 #include "stages/median/median.h"
 #include "stages/rectify/rectify.h"
+#include "stages/weighted_median/weighted_median.h"
 
 namespace duo {
 namespace {
@@ -25,14 +28,20 @@ class RefEngine final : public Engine {
   Result<void> prepare(const Setup& setup) override {
     DUO_TRY_ASSIGN(prepared_, prepare_setup(setup));
     frame_ = make_frame(prepared_);
-    matcher_.emplace(prepared_.pyramid, match_setup(prepared_));
+    if (const auto* pyramid = std::get_if<PyramidParams>(&prepared_.matcher))
+      matcher_.emplace<ref::Pyramid>(*pyramid, match_setup(prepared_));
+    else
+      matcher_.emplace<ref::Sgm>(std::get<SgmParams>(prepared_.matcher), match_setup(prepared_));
+    if (setup.fill) {
+      unsmoothed_ = Image<std::uint16_t>(prepared_.size);
+    }
     now_ = Image<std::uint8_t>(setup.size);
     next_ = Image<std::uint8_t>(setup.size);
     return {};
   }
 
   void submit(const Pair& pair) override {
-    DUO_CHECK(matcher_.has_value());
+    DUO_CHECK(matcher_.index() != 0);
     DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
     const Setup& setup = prepared_.setup;
     frame_.sequence = pair.sequence;
@@ -44,9 +53,13 @@ class RefEngine final : public Engine {
     prepare_view(pair.right, maps ? &maps->right : nullptr, frame_.right, frame_.right_inside);
 
     Disparity& disparity = frame_.disparity;
-    matcher_->match({frame_.left, frame_.right, frame_.left_inside, frame_.right_inside}, disparity.d_q4, timer_);
+    const GrayPair gray{frame_.left, frame_.right, frame_.left_inside, frame_.right_inside};
+    if (auto* pyramid = std::get_if<ref::Pyramid>(&matcher_))
+      pyramid->match(gray, disparity.d_q4, timer_);
+    else
+      std::get<ref::Sgm>(matcher_).match(gray, disparity.d_q4, timer_);
     ref::mark_measured(disparity.d_q4, disparity.origin);
-    if (setup.fill) ref::fill(disparity.d_q4, disparity.origin);
+    if (setup.fill) fill(disparity);
     timer_.stage("fill");
     if (setup.wants.depth) ref::depth(disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame_.depth_mm);
     timer_.stage("depth");
@@ -57,7 +70,8 @@ class RefEngine final : public Engine {
   const Frame& collect() override { return frame_; }
 
  private:
-  /// Raw colour to what the matcher sees. Denoising comes before resampling: only there is noise independent from pixel to pixel.
+  /// Raw colour to what the matcher sees. Denoising comes before resampling: only there is noise independent from pixel to
+  /// pixel.
   void prepare_view(const Picture& picture, const ResampleMap* map, Image<std::uint8_t>& out, Image<std::uint8_t>& inside) {
     ref::gray(picture.pixels, now_);
     timer_.stage("gray");
@@ -78,6 +92,13 @@ class RefEngine final : public Engine {
     timer_.stage("rectify");
   }
 
+  /// What was filled takes the disparity of those filled or measured pixels around it that look like it.
+  void fill(Disparity& disparity) {
+    ref::fill(disparity.d_q4, disparity.origin);
+    disparity.d_q4.swap(unsmoothed_);
+    ref::weighted_median({unsmoothed_, frame_.left, disparity.origin}, disparity.d_q4);
+  }
+
   void prepare_color(const Picture& picture, const Rectification* maps) {
     if (maps != nullptr) return simd::rectify(pool_, picture.pixels, maps->left, frame_.color);
     for (int y = 0; y < picture.pixels.height(); ++y)
@@ -86,9 +107,10 @@ class RefEngine final : public Engine {
 
   Pool pool_{1};  // colour for display is resampled by the same code in every engine
   Prepared prepared_;
-  std::optional<ref::Pyramid> matcher_;
+  std::variant<std::monostate, ref::Pyramid, ref::Sgm> matcher_;
   Frame frame_;
-  Image<std::uint8_t> now_, next_;  // one view on its way through the denoising
+  Image<std::uint16_t> unsmoothed_;  // disparities just filled
+  Image<std::uint8_t> now_, next_;   // one view on its way through the denoising
   StageTimer timer_;
 };
 

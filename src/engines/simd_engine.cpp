@@ -1,18 +1,22 @@
 // The fast CPU engine: Highway stages on a pool of threads.
 
 #include <algorithm>
+#include <optional>
+#include <variant>
 
 #include "core/check.h"
 #include "core/clock.h"
 #include "engines/engines.h"
 #include "engines/prepared.h"
 #include "matchers/pyramid/pyramid.h"
+#include "matchers/sgm/sgm.h"
 #include "stages/depth/depth.h"
 #include "stages/fill/fill.h"
 #include "stages/gaussian/gaussian.h"
 #include "stages/gray/gray.h"
 #include "stages/median/median.h"
 #include "stages/rectify/rectify.h"
+#include "stages/weighted_median/weighted_median.h"
 
 namespace duo {
 namespace {
@@ -27,14 +31,21 @@ class SimdEngine final : public Engine {
   Result<void> prepare(const Setup& setup) override {
     DUO_TRY_ASSIGN(prepared_, prepare_setup(setup));
     frame_ = make_frame(prepared_);
-    matcher_.emplace(pool_, prepared_.pyramid, match_setup(prepared_));
+    if (const auto* pyramid = std::get_if<PyramidParams>(&prepared_.matcher))
+      matcher_.emplace<simd::Pyramid>(pool_, *pyramid, match_setup(prepared_));
+    else
+      matcher_.emplace<simd::Sgm>(pool_, std::get<SgmParams>(prepared_.matcher), match_setup(prepared_));
+    if (setup.fill) {
+      unsmoothed_ = Image<std::uint16_t>(prepared_.size);
+      smooth_scratch_.emplace(prepared_.size);
+    }
     now_ = Image<std::uint8_t>(setup.size);
     next_ = Image<std::uint8_t>(setup.size);
     return {};
   }
 
   void submit(const Pair& pair) override {
-    DUO_CHECK(matcher_.has_value());
+    DUO_CHECK(matcher_.index() != 0);
     DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
     const Setup& setup = prepared_.setup;
     frame_.sequence = pair.sequence;
@@ -46,9 +57,13 @@ class SimdEngine final : public Engine {
     prepare_view(pair.right, maps ? &maps->right : nullptr, frame_.right, frame_.right_inside);
 
     Disparity& disparity = frame_.disparity;
-    matcher_->match({frame_.left, frame_.right, frame_.left_inside, frame_.right_inside}, disparity.d_q4, timer_);
+    const GrayPair gray{frame_.left, frame_.right, frame_.left_inside, frame_.right_inside};
+    if (auto* pyramid = std::get_if<simd::Pyramid>(&matcher_))
+      pyramid->match(gray, disparity.d_q4, timer_);
+    else
+      std::get<simd::Sgm>(matcher_).match(gray, disparity.d_q4, timer_);
     simd::mark_measured(pool_, disparity.d_q4, disparity.origin);
-    if (setup.fill) simd::fill(pool_, disparity.d_q4, disparity.origin);
+    if (setup.fill) fill(disparity);
     timer_.stage("fill");
     if (setup.wants.depth) simd::depth(pool_, disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame_.depth_mm);
     timer_.stage("depth");
@@ -59,7 +74,8 @@ class SimdEngine final : public Engine {
   const Frame& collect() override { return frame_; }
 
  private:
-  /// Raw colour to what the matcher sees. Denoising comes before resampling: only there is noise independent from pixel to pixel.
+  /// Raw colour to what the matcher sees. Denoising comes before resampling: only there is noise independent from pixel to
+  /// pixel.
   void prepare_view(const Picture& picture, const ResampleMap* map, Image<std::uint8_t>& out, Image<std::uint8_t>& inside) {
     simd::gray(pool_, picture.pixels, now_);
     timer_.stage("gray");
@@ -80,6 +96,13 @@ class SimdEngine final : public Engine {
     timer_.stage("rectify");
   }
 
+  /// What was filled takes the disparity of those filled or measured pixels around it that look like it.
+  void fill(Disparity& disparity) {
+    simd::fill(pool_, disparity.d_q4, disparity.origin);
+    disparity.d_q4.swap(unsmoothed_);
+    simd::weighted_median(pool_, {unsmoothed_, frame_.left, disparity.origin}, *smooth_scratch_, disparity.d_q4);
+  }
+
   void prepare_color(const Picture& picture, const Rectification* maps) {
     if (maps != nullptr) return simd::rectify(pool_, picture.pixels, maps->left, frame_.color);
     for (int y = 0; y < picture.pixels.height(); ++y)
@@ -88,9 +111,11 @@ class SimdEngine final : public Engine {
 
   Pool pool_;
   Prepared prepared_;
-  std::optional<simd::Pyramid> matcher_;
+  std::variant<std::monostate, simd::Pyramid, simd::Sgm> matcher_;
   Frame frame_;
-  Image<std::uint8_t> now_, next_;  // one view on its way through the denoising
+  std::optional<simd::WeightedMedianScratch> smooth_scratch_;
+  Image<std::uint16_t> unsmoothed_;  // disparities just filled
+  Image<std::uint8_t> now_, next_;   // one view on its way through the denoising
   StageTimer timer_;
 };
 

@@ -2,3 +2,6 @@
 set(dir ${PROJECT_SOURCE_DIR}/src/matchers/pyramid)
 target_sources(duoptic PRIVATE ${dir}/pyramid.cpp ${dir}/pyramid_params.cpp ${dir}/pyramid_ref.cpp ${dir}/pyramid_simd.cpp)
 duoptic_test(matchers/pyramid ${dir}/pyramid_test.cpp)
+set(dir ${PROJECT_SOURCE_DIR}/src/matchers/sgm)
+target_sources(duoptic PRIVATE ${dir}/sgm_params.cpp ${dir}/sgm_ref.cpp ${dir}/sgm_simd.cpp)
+duoptic_test(matchers/sgm ${dir}/sgm_test.cpp)

@@ -6,6 +6,7 @@
 #include "duoptic/tracker.h"
 #include "engines/engines.h"
 #include "matchers/pyramid/pyramid_params.h"
+#include "matchers/sgm/sgm_params.h"
 #include "trackers/arm/arm_tracker.h"
 #include "trackers/arm/thesis_tracker.h"
 
@@ -21,22 +22,36 @@ Result<std::unique_ptr<Engine>> make_engine(std::string_view name, int threads) 
                fmt::format("make the engine: no engine is called \"{}\"; choose one of: auto, simd, ref", name)};
 }
 
-std::vector<std::string> matcher_names() { return {"pyramid"}; }
+std::vector<std::string> matcher_names() { return {"sgm", "pyramid"}; }
 
 std::vector<std::string> matcher_presets(std::string_view matcher) {
-  if (matcher != "pyramid") return {};
-  return {std::begin(kPyramidPresets), std::end(kPyramidPresets)};
+  if (matcher == "sgm") return {std::begin(kSgmPresets), std::end(kSgmPresets)};
+  if (matcher == "pyramid") return {std::begin(kPyramidPresets), std::end(kPyramidPresets)};
+  return {};
 }
 
-Result<std::vector<ParameterInfo>> matcher_parameters(std::string_view matcher, std::string_view preset) {
-  if (matcher != "pyramid")
-    return Error{ErrorCode::kBadInput,
-                 fmt::format("list parameters: no matcher is called \"{}\"; choose one of: pyramid", matcher)};
-  DUO_TRY_ASSIGN(const PyramidParams params, pyramid_params(preset, {}));
+namespace {
+
+template <class Params>
+std::vector<ParameterInfo> described(const Params& params, std::span<const Parameter<Params>> table) {
   std::vector<ParameterInfo> out;
-  for (const auto& p : kPyramidParameters)
-    out.push_back({p.name, p.unit, p.help, double(params.*p.member), double(p.min), double(p.max)});
+  for (const auto& p : table) out.push_back({p.name, p.unit, p.help, double(params.*p.member), double(p.min), double(p.max)});
   return out;
+}
+
+}  // namespace
+
+Result<std::vector<ParameterInfo>> matcher_parameters(std::string_view matcher, std::string_view preset) {
+  if (matcher == "sgm") {
+    DUO_TRY_ASSIGN(const SgmParams params, sgm_params(preset, {}));
+    return described<SgmParams>(params, kSgmParameters);
+  }
+  if (matcher == "pyramid") {
+    DUO_TRY_ASSIGN(const PyramidParams params, pyramid_params(preset, {}));
+    return described<PyramidParams>(params, kPyramidParameters);
+  }
+  return Error{ErrorCode::kBadInput,
+               fmt::format("list parameters: no matcher is called \"{}\"; choose one of: sgm, pyramid", matcher)};
 }
 
 Result<std::unique_ptr<Tracker>> make_tracker(std::string_view name, std::string_view preset) {
@@ -44,7 +59,8 @@ Result<std::unique_ptr<Tracker>> make_tracker(std::string_view name, std::string
     return Error{ErrorCode::kBadInput, fmt::format("make the tracker: no tracker is called \"{}\"; choose one of: arm", name)};
   if (preset == "default") return make_arm_tracker();
   if (preset == "thesis") return make_thesis_tracker();
-  return Error{ErrorCode::kBadInput, fmt::format("make the tracker: arm has no preset \"{}\"; choose one of: default, thesis", preset)};
+  return Error{ErrorCode::kBadInput,
+               fmt::format("make the tracker: arm has no preset \"{}\"; choose one of: default, thesis", preset)};
 }
 
 }  // namespace duo

@@ -5,6 +5,7 @@
 
 #include "core/clock.h"
 #include "core/gray_pair.h"
+#include "core/match_setup.h"
 #include "core/pool.h"
 #include "core/tile_sets.h"
 #include "matchers/pyramid/pyramid_params.h"
@@ -13,13 +14,6 @@
 #include "stages/speckle/speckle.h"
 
 namespace duo {
-
-/// What a matcher needs to know before the first pair.
-struct MatchSetup {
-  Size size;
-  int max_disparity = 0;  // searches [0, max_disparity)
-  bool masked = false;    // pairs come with inside pictures
-};
 
 /// The memory of one level; level 0 is the full picture, which belongs to the caller.
 struct PyramidLevel {

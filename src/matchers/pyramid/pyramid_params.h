@@ -2,8 +2,6 @@
 #pragma once
 
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include "core/parameter.h"
 #include "duoptic/result.h"
@@ -48,6 +46,6 @@ inline constexpr std::string_view kPyramidPresets[] = {"default", "thesis"};
 /// The parameters of a preset with some of them overridden.
 ///
 /// Errors  unknown preset or name, value out of range or not whole: with what is known or allowed
-Result<PyramidParams> pyramid_params(std::string_view preset, const std::vector<std::pair<std::string, double>>& overrides);
+Result<PyramidParams> pyramid_params(std::string_view preset, const Overrides& overrides);
 
 }  // namespace duo

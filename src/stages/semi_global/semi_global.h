@@ -36,8 +36,10 @@ struct SemiGlobalParams {
 /// L' = L(p - r), and L = C where p - r is not in the picture; P2 = p2_at(gray step from p - r to p). S = min(255, sum of L
 /// over the paths): left and right along the row, down, with `diagonals` both diagonals down, with `upward` the same from
 /// below. Left winner: the least S, the smallest d of equals. Right winner of x: the least S(x + d, d), the smallest d of
-/// equals. Sub-pixel: a parabola through S at d - 1, d, d + 1, rounded half away from zero; none at the ends of the range.
-/// Margin: least S at other disparities than d - 1, d, d + 1, minus S(d), 255 taken where there is none. Small = doubtful.
+/// equals. Sub-pixel, none at the ends of the range: t, the mean of the vertices of a parabola and of a V through S at d - 1,
+/// d, d + 1, in units of half a pixel, becomes t (3 - t) / 2: penalties and intervals draw S to whole pixels, this takes back
+/// half. Margin: least S at other disparities than d - 1, d, d + 1, minus S(d), 255 taken where there is none. Small =
+/// doubtful.
 ///
 /// Shape    planes and outputs H x W; left and right planes padded alike by padding() columns
 /// Units    left and right px; fine 1/16 px; margin in costs
@@ -47,7 +49,9 @@ struct SemiGlobalParams {
 ///          L + p1 would pass 255 it saturates, above min L' + P2 <= 224, and changes nothing
 /// Source   Hirschmueller, "Stereo processing by semiglobal matching and mutual information", 2008; P2 by the picture's
 /// gradient
-///          as there; that three paths of one sweep are enough is measured: see matchers/sgm/README.md
+///          as there; fractions equalised as in Shimizu, Okutomi, "Precise sub-pixel
+///          estimation on area-based matching", 2001, and Haller, Nedevschi 2012; that three paths of one sweep are enough is
+///          measured: see matchers/sgm/README.md
 struct SemiGlobal {
   MatchPlanes left, right;
   int max_disparity = 0;  // 1 .. 256
@@ -65,8 +69,8 @@ void semi_global(const SemiGlobal& in, const SemiGlobalMatch& out);
 }  // namespace ref
 
 namespace simd {
-/// The memory of the sweeps: a ring of rows of path costs (one for each thread and one more), sums and costs of a row for each
-/// thread, and with `upward` one byte for each pixel and disparity.
+/// The memory of the sweeps: a ring of rows of path costs (one for each thread and one more), sums and costs of two rows for
+/// each thread, and with `upward` one byte for each pixel and disparity.
 class SemiGlobalScratch {
  public:
   SemiGlobalScratch(Size size, int max_disparity, const SemiGlobalParams& params, int threads);
@@ -76,7 +80,7 @@ class SemiGlobalScratch {
   static constexpr int kGap = 64;  // bytes of 255 between the path costs of two pixels: d = -1 and d = max_disparity
   struct Row {
     Image<std::uint8_t> sums, costs;   // [pixel][disparity]
-    Image<std::uint8_t> path;          // [2][disparity]: path costs along the row, this pixel's and the one before it
+    Image<std::uint8_t> along, back;   // [2][disparity]: path costs along the row and back, this pixel's and those before
     Image<std::uint8_t> totals;        // S of one pixel
     Image<std::uint8_t> best, winner;  // of the right view, padding() columns before x = 0
   };
@@ -85,7 +89,7 @@ class SemiGlobalScratch {
   std::vector<Image<std::uint8_t>> paths;    // [row of the ring]: a row for each direction, [pixel][disparity]
   std::vector<Image<std::uint8_t>> minima;   // [row of the ring]: a row for each direction, [pixel]
   Image<std::uint8_t> none;                  // path costs where there is no pixel before: zeros
-  std::vector<Row> rows;                     // one a thread
+  std::vector<Row> rows;                     // two a thread
   Image<std::uint8_t> upward;                // S of the paths from below
   std::unique_ptr<std::atomic<int>[]> done;  // [row]: pixels finished
 };

@@ -71,11 +71,18 @@ void add_path(const SemiGlobal& in, Volume& costs, int dx, int dy, Volume& sums)
     }
 }
 
+/// Mean of the vertices of a parabola and of a V, in 1/256 of half a pixel.
+int vertex_256(int slope, int higher, int sum) {
+  const int height = higher * sum;
+  return (128 * slope * (higher + sum) + height / 2) / height;
+}
+
 int sub_pixel_q4(const std::uint8_t* s, int d, int n) {
   if (d == 0 || d + 1 == n) return 0;
-  const int curvature = s[d - 1] + s[d + 1] - 2 * s[d], slope = 8 * (s[d - 1] - s[d + 1]);
-  if (curvature == 0) return 0;
-  const int size = (std::abs(slope) + curvature / 2) / curvature;
+  const int before = s[d - 1] - s[d], after = s[d + 1] - s[d], higher = std::max(before, after), slope = before - after;
+  if (higher == 0) return 0;
+  const int t = vertex_256(std::abs(slope), higher, before + after);
+  const int size = (t * (768 - t) + 8192) >> 14;
   return slope < 0 ? -size : size;
 }
 

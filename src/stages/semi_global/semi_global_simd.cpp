@@ -30,19 +30,24 @@ constexpr int kBlock = 32;  // pixels between two looks at the row before
 
 HWY_INLINE V set(int value) { return hn::Set(D(), static_cast<std::uint8_t>(value)); }
 
-/// The least of all lanes.
+/// The least of all lanes of two vectors: the first one's in the low byte, the second one's in the next.
 template <class DV>
-HWY_INLINE int least(DV d, hn::Vec<DV> v) {
+HWY_INLINE int least(DV d, hn::Vec<DV> a, hn::Vec<DV> b) {
   if constexpr (hn::MaxLanes(DV()) > 16) {
     const hn::Half<DV> half;
-    return least(half, hn::Min(hn::LowerHalf(half, v), hn::UpperHalf(half, v)));
+    return least(half, hn::Min(hn::LowerHalf(half, a), hn::UpperHalf(half, a)),
+                 hn::Min(hn::LowerHalf(half, b), hn::UpperHalf(half, b)));
   } else {
+    const hn::Repartition<std::uint16_t, DV> d16;
+    auto v = hn::Min(hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b));
     v = hn::Min(v, hn::ShiftRightBytes<8>(d, v));
     v = hn::Min(v, hn::ShiftRightBytes<4>(d, v));
     v = hn::Min(v, hn::ShiftRightBytes<2>(d, v));
-    return std::min(hn::GetLane(v), hn::GetLane(hn::ShiftRightBytes<1>(d, v)));
+    return hn::GetLane(hn::BitCast(d16, v));
   }
 }
+HWY_INLINE int first_of(int pair) { return pair & 255; }
+HWY_INLINE int second_of(int pair) { return pair >> 8; }
 
 /// What the pixel before on a path left behind.
 struct Before {
@@ -115,180 +120,206 @@ struct PixelCost {
   }
 };
 
-/// One sweep down (or up) the picture, as one thread sees it.
-class Sweep {
- public:
-  Sweep(const SemiGlobal& in, Scratch& scratch, const SemiGlobalMatch& out, int thread, int threads, bool up)
-      : in_(in),
-        s_(scratch),
-        out_(out),
-        row_(scratch.rows[static_cast<std::size_t>(thread)]),
-        thread_(thread),
-        threads_(threads),
-        up_(up),
-        w_(in.left.size().width),
-        h_(in.left.size().height),
-        lanes_(scratch.lanes) {
+/// What all rows of one sweep share, as one thread sees it. Up: rows are taken from the bottom, and sums go to the volume.
+struct Sweep {
+  const SemiGlobal& in;
+  Scratch& s;
+  const SemiGlobalMatch& out;
+  int thread, threads;
+  bool up;
+  int w, h, lanes, first;  // first: lane of the first vector that holds a disparity
+  int p2[256];
+  HWY_ALIGN_MAX std::uint8_t unused[kGap];  // 255 in the lanes of that vector which hold none
+
+  Sweep(const SemiGlobal& in_, Scratch& scratch, const SemiGlobalMatch& out_, int thread_, int threads_, bool up_)
+      : in(in_),
+        s(scratch),
+        out(out_),
+        thread(thread_),
+        threads(threads_),
+        up(up_),
+        w(in.left.size().width),
+        h(in.left.size().height),
+        lanes(s.lanes) {
     const int n = static_cast<int>(hn::Lanes(D()));
-    first_ = (lanes_ - in.max_disparity) / n * n;
-    for (int i = 0; i < 256; ++i) p2_[i] = in.params.p2_at(i);
-    for (int j = 0; j < kGap; ++j) unused_[j] = first_ + j < lanes_ - in.max_disparity ? 255 : 0;
+    first = (lanes - in.max_disparity) / n * n;
+    for (int i = 0; i < 256; ++i) p2[i] = in.params.p2_at(i);
+    for (int j = 0; j < kGap; ++j) unused[j] = first + j < lanes - in.max_disparity ? 255 : 0;
   }
 
-  void run() {
-    for (int i = thread_; i < h_; i += threads_) {
-      const bool masked = !in_.left.outside.empty();
-      if (up_)
-        masked ? along<true, true>(i) : along<true, false>(i);
-      else
-        masked ? along<false, true>(i) : along<false, false>(i);
-      if (!up_) back(i);
-    }
-  }
-
- private:
-  int y_of(int i) const { return up_ ? h_ - 1 - i : i; }
+  int y_of(int i) const { return up ? h - 1 - i : i; }
 
   void wait_for(int i, int pixels) const {
-    const std::atomic<int>& done = s_.done[static_cast<std::size_t>(i)];
+    const std::atomic<int>& done = s.done[static_cast<std::size_t>(i)];
     for (int spins = 0; done.load(std::memory_order_acquire) < pixels; ++spins)
       if (spins > 200) std::this_thread::yield();
   }
+};
 
-  /// Path costs of direction k (0 straight, 1 from x - 1, 2 from x + 1) in row i of the sweep.
-  std::uint8_t* path(int i, int k, int x) const {
-    return s_.paths[static_cast<std::size_t>(i % (threads_ + 1))].row(k) + kGap + static_cast<std::ptrdiff_t>(x) * s_.stride;
-  }
-  std::uint8_t& minimum(int i, int k, int x) const { return s_.minima[static_cast<std::size_t>(i % (threads_ + 1))].row(k)[x]; }
+/// The pixel before on a path, `from` in a row whose gray values are given; none where the path begins.
+HWY_INLINE Before before(const Sweep& sweep, const std::uint8_t* gray, int x, const std::uint8_t* gray_from, int from,
+                         const std::uint8_t* costs, int least) {
+  if (gray_from == nullptr || from < 0 || from >= sweep.w) return Before(sweep.s.none.row(0) + kGap, 0, 0, 0);
+  return Before(costs, least, sweep.p2[std::abs(gray[x] - gray_from[from])], sweep.in.params.p1);
+}
 
-  Before before(int i, int k, int y, int x) const {
-    const int from = k == 0 ? x : k == 1 ? x - 1 : x + 1;
-    if (i == 0 || from < 0 || from >= w_) return Before(s_.none.row(0) + kGap, 0, 0, 0);
-    const View<const std::uint8_t> gray = in_.left.value[0];
-    const int step = std::abs(gray.at(y, x) - gray.at(y_of(i - 1), from));
-    return Before(path(i - 1, k, from), minimum(i - 1, k, from), p2_[step], in_.params.p1);
-  }
+/// A row on its way from left to right.
+template <bool kUp, bool kMasked, bool kDiagonals>
+class Along {
+ public:
+  static constexpr int kPaths = kDiagonals ? 3 : 1;
 
-  Before beside(const std::uint8_t* costs, int least, int y, int x, int from) const {
-    const View<const std::uint8_t> gray = in_.left.value[0];
-    if (from < 0 || from >= w_) return Before(s_.none.row(0) + kGap, 0, 0, 0);
-    return Before(costs, least, p2_[std::abs(gray.at(y, x) - gray.at(y, from))], in_.params.p1);
-  }
-
-  /// Row i from left to right. Up: sums go to the volume; else to the thread's row, with the costs and the path along the row.
-  template <bool kUp, bool kMasked>
-  void along(int i) {
-    in_.params.diagonals ? along<kUp, kMasked, true>(i) : along<kUp, kMasked, false>(i);
-  }
-
-  template <bool kUp, bool kMasked, bool kDiagonals>
-  void along(int i) {
-    const D d;
-    const int n = static_cast<int>(hn::Lanes(d)), y = y_of(i);
-    constexpr int kPaths = kDiagonals ? 3 : 1;
-    std::uint8_t* horizontal[2] = {row_.path.row(0) + kGap, row_.path.row(1) + kGap};
-    const RowPlanes left(in_.left, y, 0), right(in_.right, y, 1 - lanes_);
-    const SemiGlobalParams params = in_.params;
-    int last_least = 0;
-    for (int x = 0; x < w_; ++x) {
-      if (x % kBlock == 0 && i > 0) wait_for(i - 1, std::min(w_, x + kBlock + 1));
-      const PixelCost<kMasked> pixel(left, right, params, x);
-      const Before from_left = beside(horizontal[0], last_least, y, x, x - 1);
-      const Before above[3] = {before(i, 0, y, x), before(i, kDiagonals ? 1 : 0, y, x), before(i, kDiagonals ? 2 : 0, y, x)};
-      const std::ptrdiff_t cell = static_cast<std::ptrdiff_t>(x) * lanes_;
-      std::uint8_t* sums = kUp ? s_.upward.row(y) + cell : row_.sums.row(0) + cell;
-      std::uint8_t* costs = row_.costs.row(0) + cell;
-      const std::uint8_t* below = params.upward ? s_.upward.row(y) + cell : nullptr;
-      std::uint8_t *from_here = horizontal[1], *paths[3];
-      for (int k = 0; k < kPaths; ++k) paths[k] = path(i, k, x);
-      const int first = first_, lanes = lanes_;
-      auto least_left = set(255);
-      V least_above[3] = {least_left, least_left, least_left};
-      for (int j = first; j < lanes; j += n) {
-        auto cost = pixel.at(j);
-        if (j == first) cost = hn::Or(cost, hn::Load(d, unused_));
-        auto sum = hn::Zero(d);
-        if (!kUp) {
-          hn::Store(cost, d, costs + j);
-          sum = from_left.step(j, cost);
-          hn::Store(sum, d, from_here + j);
-          least_left = hn::Min(least_left, sum);
-          if (params.upward) sum = hn::SaturatedAdd(sum, hn::Load(d, below + j));
-        }
-        for (int k = 0; k < kPaths; ++k) {
-          const auto l = above[k].step(j, cost);
-          hn::Store(l, d, paths[k] + j);
-          least_above[k] = hn::Min(least_above[k], l);
-          sum = hn::SaturatedAdd(sum, l);
-        }
-        hn::Store(sum, d, sums + j);
-      }
-      if (!kUp) last_least = least(d, least_left);
-      for (int k = 0; k < kPaths; ++k) minimum(i, k, x) = static_cast<std::uint8_t>(least(d, least_above[k]));
-      std::swap(horizontal[0], horizontal[1]);
-      if (x % kBlock == kBlock - 1 || x == w_ - 1) s_.done[static_cast<std::size_t>(i)].store(x + 1, std::memory_order_release);
+  Along(const Sweep& sweep, int i, Scratch::Row& row)
+      : sweep_(sweep),
+        row_(row),
+        left_(sweep.in.left, sweep.y_of(i), 0),
+        right_(sweep.in.right, sweep.y_of(i), 1 - sweep.lanes) {
+    const int ring = sweep.threads + 1, y = sweep.y_of(i);
+    Scratch& s = sweep.s;
+    for (int k = 0; k < kPaths; ++k) {
+      paths_[k] = s.paths[static_cast<std::size_t>(i % ring)].row(k) + kGap;
+      minima_[k] = s.minima[static_cast<std::size_t>(i % ring)].row(k);
+      paths_above_[k] = s.paths[static_cast<std::size_t>((i + ring - 1) % ring)].row(k) + kGap;
+      minima_above_[k] = s.minima[static_cast<std::size_t>((i + ring - 1) % ring)].row(k);
     }
+    gray_above_ = i == 0 ? nullptr : sweep.in.left.value[0].row(sweep.y_of(i - 1));
+    before_ = row.along.row(0) + kGap;
+    here_ = row.along.row(1) + kGap;
+    if (kUp || sweep.in.params.upward) upward_ = s.upward.row(y);
   }
 
-  /// Row y from right to left: adds the last path and picks the winners.
-  void back(int y) {
+  HWY_INLINE void pixel(int x) {
     const D d;
-    const int n = static_cast<int>(hn::Lanes(d)), pad = lanes_;
-    std::uint8_t* horizontal[2] = {row_.path.row(0) + kGap, row_.path.row(1) + kGap};
-    std::uint8_t *totals = row_.totals.row(0) + kGap, *best = row_.best.row(0) + pad, *winner = row_.winner.row(0) + pad;
-    std::memset(best - pad, 255, static_cast<std::size_t>(pad + w_));
-    int last_least = 0;
-    for (int x = w_ - 1; x >= 0; --x) {
-      const Before from_right = beside(horizontal[0], last_least, y, x, x + 1);
-      const std::ptrdiff_t cell = static_cast<std::ptrdiff_t>(x) * lanes_, right = x - lanes_ + 1;
-      const std::uint8_t *sums = row_.sums.row(0) + cell, *costs = row_.costs.row(0) + cell;
-      std::uint8_t* from_here = horizontal[1];
-      const int first = first_, lanes = lanes_;
-      auto least_right = set(255), least_total = least_right;
-      for (int j = first; j < lanes; j += n) {
-        const auto l = from_right.step(j, hn::Load(d, costs + j));
-        hn::Store(l, d, from_here + j);
-        least_right = hn::Min(least_right, l);
-        const auto total = hn::SaturatedAdd(hn::Load(d, sums + j), l);
-        hn::Store(total, d, totals + j);
-        least_total = hn::Min(least_total, total);
-        // x falls, and with it d of the same right pixel: an equal one replaces it.
-        const auto best_now = hn::Min(total, hn::LoadU(d, best + right + j));
-        const auto better = hn::Eq(best_now, total);
-        hn::StoreU(best_now, d, best + right + j);
-        const auto disparity = hn::Sub(set(lanes - 1 - j), hn::Iota(d, 0));
-        hn::StoreU(hn::IfThenElse(better, disparity, hn::LoadU(d, winner + right + j)), d, winner + right + j);
+    const int n = static_cast<int>(hn::Lanes(d)), first = sweep_.first, lanes = sweep_.lanes;
+    const std::ptrdiff_t stride = sweep_.s.stride, cell = static_cast<std::ptrdiff_t>(x) * lanes;
+    const PixelCost<kMasked> cost_of(left_, right_, sweep_.in.params, x);
+    const std::uint8_t* gray = left_.value[0];
+    const Before from_left = before(sweep_, gray, x, gray, x - 1, before_, least_);
+    constexpr int kFrom[3] = {0, kDiagonals ? -1 : 0, kDiagonals ? 1 : 0};
+    const auto above = [&](int k) HWY_ATTR {
+      const int from = x + kFrom[k];
+      return before(sweep_, gray, x, gray_above_, from, paths_above_[k] + from * stride,
+                    from < 0 || from >= sweep_.w ? 0 : minima_above_[k][from]);
+    };
+    const Before from_above[3] = {above(0), above(kDiagonals ? 1 : 0), above(kDiagonals ? 2 : 0)};
+    std::uint8_t *const here = here_, *const sums = (kUp ? upward_ : row_.sums.row(0)) + cell,
+                        *const costs = row_.costs.row(0) + cell;
+    std::uint8_t* const paths[3] = {paths_[0] + x * stride, paths_[kPaths / 2] + x * stride, paths_[kPaths - 1] + x * stride};
+    const std::uint8_t* const below = !kUp && upward_ != nullptr ? upward_ + cell : nullptr;
+    auto least_left = set(255);
+    V least_above[3] = {least_left, least_left, least_left};
+    for (int j = first; j < lanes; j += n) {
+      auto cost = cost_of.at(j);
+      if (j == first) cost = hn::Or(cost, hn::Load(d, sweep_.unused));
+      auto sum = hn::Zero(d);
+      if (!kUp) {
+        hn::Store(cost, d, costs + j);
+        sum = from_left.step(j, cost);
+        hn::Store(sum, d, here + j);
+        least_left = hn::Min(least_left, sum);
+        if (below != nullptr) sum = hn::SaturatedAdd(sum, hn::Load(d, below + j));
       }
-      last_least = least(d, least_right);
-      pick(y, x, totals, least(d, least_total));
-      std::swap(horizontal[0], horizontal[1]);
+      for (int k = 0; k < kPaths; ++k) {
+        const auto l = from_above[k].step(j, cost);
+        hn::Store(l, d, paths[k] + j);
+        least_above[k] = hn::Min(least_above[k], l);
+        sum = hn::SaturatedAdd(sum, l);
+      }
+      hn::Store(sum, d, sums + j);
     }
-    std::int16_t* out = out_.right.row(y);
-    for (int x = 0; x < w_; ++x) out[x] = winner[x];
+    const int pair = least(d, least_left, least_above[0]);
+    least_ = first_of(pair);
+    minima_[0][x] = static_cast<std::uint8_t>(second_of(pair));
+    if (kDiagonals) {
+      const int others = least(d, least_above[1], least_above[2]);
+      minima_[kPaths / 2][x] = static_cast<std::uint8_t>(first_of(others));
+      minima_[kPaths - 1][x] = static_cast<std::uint8_t>(second_of(others));
+    }
+    std::swap(before_, here_);
   }
 
+ private:
+  const Sweep& sweep_;
+  Scratch::Row& row_;
+  RowPlanes left_, right_;
+  std::uint8_t *paths_[3] = {}, *minima_[3] = {};
+  const std::uint8_t *paths_above_[3] = {}, *minima_above_[3] = {}, *gray_above_ = nullptr;
+  std::uint8_t *before_, *here_, *upward_ = nullptr;
+  int least_ = 0;
+};
+
+/// The same row on its way back: adds the last path and picks the winners.
+class Back {
+ public:
+  Back(const Sweep& sweep, int y, Scratch::Row& row)
+      : sweep_(sweep),
+        row_(row),
+        y_(y),
+        gray_(sweep.in.left.value[0].row(y)),
+        before_(row.back.row(0) + kGap),
+        here_(row.back.row(1) + kGap) {
+    std::memset(row.best.row(0), 255, static_cast<std::size_t>(sweep.lanes + sweep.w));
+  }
+
+  HWY_INLINE void pixel(int x) {
+    const D d;
+    const int n = static_cast<int>(hn::Lanes(d)), first = sweep_.first, lanes = sweep_.lanes;
+    const Before from_right = before(sweep_, gray_, x, gray_, x + 1, before_, least_);
+    const std::ptrdiff_t cell = static_cast<std::ptrdiff_t>(x) * lanes;
+    const std::uint8_t *const sums = row_.sums.row(0) + cell, *const costs = row_.costs.row(0) + cell;
+    // Of the right pixel x - d: lane 0 is x + 1 - lanes, and both rows begin `lanes` before x = 0.
+    std::uint8_t *const best = row_.best.row(0) + x + 1, *const winner = row_.winner.row(0) + x + 1;
+    std::uint8_t *const here = here_, *const totals = row_.totals.row(0) + kGap;
+    auto least_right = set(255), least_total = least_right;
+    for (int j = first; j < lanes; j += n) {
+      const auto l = from_right.step(j, hn::Load(d, costs + j));
+      hn::Store(l, d, here + j);
+      least_right = hn::Min(least_right, l);
+      const auto total = hn::SaturatedAdd(hn::Load(d, sums + j), l);
+      hn::Store(total, d, totals + j);
+      least_total = hn::Min(least_total, total);
+      // x falls, and with it d of the same right pixel: an equal one replaces it.
+      const auto best_now = hn::Min(total, hn::LoadU(d, best + j));
+      const auto better = hn::Eq(best_now, total);
+      hn::StoreU(best_now, d, best + j);
+      const auto disparity = hn::Sub(set(lanes - 1 - j), hn::Iota(d, 0));
+      hn::StoreU(hn::IfThenElse(better, disparity, hn::LoadU(d, winner + j)), d, winner + j);
+    }
+    const int pair = least(d, least_right, least_total);
+    least_ = first_of(pair);
+    pick(x, totals, second_of(pair));
+    std::swap(before_, here_);
+  }
+
+  void finish() {
+    std::int16_t* out = sweep_.out.right.row(y_);
+    const std::uint8_t* winner = row_.winner.row(0) + sweep_.lanes;
+    for (int x = 0; x < sweep_.w; ++x) out[x] = winner[x];
+  }
+
+ private:
   /// The left winner of a pixel: the last lane that holds the least.
-  HWY_INLINE void pick(int y, int x, std::uint8_t* totals, int least_total) {
+  HWY_INLINE void pick(int x, std::uint8_t* totals, int least_total) {
     const D d;
-    const int n = static_cast<int>(hn::Lanes(d));
-    int lane = first_;
-    for (int j = lanes_ - n; j >= first_; j -= n) {
+    const int n = static_cast<int>(hn::Lanes(d)), lanes = sweep_.lanes;
+    int lane = 0;
+    for (int j = sweep_.first; j < lanes; j += n) {
       std::uint64_t bits = 0;
       hn::StoreMaskBits(d, hn::Eq(hn::Load(d, totals + j), set(least_total)), reinterpret_cast<std::uint8_t*>(&bits));
-      if (bits == 0) continue;
-      lane = j + 63 - std::countl_zero(bits);
-      break;
+      lane = bits != 0 ? j + 63 - std::countl_zero(bits) : lane;
     }
-    const int disparity = lanes_ - 1 - lane;
-    out_.left.at(y, x) = static_cast<std::int16_t>(disparity);
+    const int disparity = lanes - 1 - lane;
+    sweep_.out.left.row(y_)[x] = static_cast<std::int16_t>(disparity);
     int offset = 0;
-    if (disparity > 0 && disparity + 1 < in_.max_disparity) {
-      const int below = totals[lane + 1], beyond = totals[lane - 1], curvature = below + beyond - 2 * least_total;
-      const int size = curvature == 0 ? 0 : (8 * std::abs(below - beyond) + curvature / 2) / curvature;
+    if (disparity > 0 && disparity + 1 < sweep_.in.max_disparity) {
+      const int below = totals[lane + 1] - least_total, beyond = totals[lane - 1] - least_total;
+      const int higher = std::max(below, beyond), height = higher * (below + beyond);
+      const int t = height == 0 ? 0 : (128 * std::abs(below - beyond) * (higher + below + beyond) + height / 2) / height;
+      const int size = (t * (768 - t) + 8192) >> 14;
       offset = below < beyond ? -size : size;
     }
-    out_.fine.at(y, x) = static_cast<std::uint16_t>(16 * disparity + offset);
-    if (!out_.margin.empty()) out_.margin.at(y, x) = static_cast<std::uint8_t>(margin(totals, lane, least_total));
+    sweep_.out.fine.row(y_)[x] = static_cast<std::uint16_t>(16 * disparity + offset);
+    if (!sweep_.out.margin.empty()) sweep_.out.margin.row(y_)[x] = static_cast<std::uint8_t>(margin(totals, lane, least_total));
   }
 
   int margin(std::uint8_t* totals, int lane, int least_total) const {
@@ -296,23 +327,58 @@ class Sweep {
     // The winner and its neighbours do not count; what lies before the first lane and behind the last is never read.
     totals[lane - 1] = totals[lane] = totals[lane + 1] = 255;
     auto second = set(255);
-    for (int j = first_; j < lanes_; j += static_cast<int>(hn::Lanes(d))) second = hn::Min(second, hn::Load(d, totals + j));
-    return least(d, second) - least_total;
+    for (int j = sweep_.first; j < sweep_.lanes; j += static_cast<int>(hn::Lanes(d)))
+      second = hn::Min(second, hn::Load(d, totals + j));
+    return first_of(least(d, second, second)) - least_total;
   }
 
-  const SemiGlobal& in_;
-  Scratch& s_;
-  const SemiGlobalMatch& out_;
+  const Sweep& sweep_;
   Scratch::Row& row_;
-  int thread_, threads_;
-  bool up_;
-  int w_, h_, lanes_, first_;
-  int p2_[256];
-  HWY_ALIGN_MAX std::uint8_t unused_[kGap];
+  int y_;
+  const std::uint8_t* gray_;
+  std::uint8_t *before_, *here_;
+  int least_ = 0;
 };
 
+/// A thread walks along one row and back along its last one at the same time: each pixel of a path waits for the pixel before,
+/// and two such chains fill each other's waiting.
+template <bool kUp, bool kMasked, bool kDiagonals>
+void run(const Sweep& sweep) {
+  const std::size_t rows = 2 * static_cast<std::size_t>(sweep.thread);
+  int last = -1, turn = 0;
+  for (int i = sweep.thread; i < sweep.h; i += sweep.threads, turn ^= 1) {
+    Along<kUp, kMasked, kDiagonals> along(sweep, i, sweep.s.rows[rows + static_cast<std::size_t>(turn)]);
+    Back back(sweep, std::max(last, 0), sweep.s.rows[rows + static_cast<std::size_t>(turn ^ 1)]);
+    for (int begin = 0; begin < sweep.w; begin += kBlock) {
+      const int end = std::min(begin + kBlock, sweep.w);
+      if (i > 0) sweep.wait_for(i - 1, std::min(end + 1, sweep.w));
+      for (int x = begin; x < end; ++x) {
+        along.pixel(x);
+        if (!kUp && last >= 0) back.pixel(sweep.w - 1 - x);
+      }
+      sweep.s.done[static_cast<std::size_t>(i)].store(end, std::memory_order_release);
+    }
+    if (!kUp && last >= 0) back.finish();
+    last = i;
+  }
+  if (kUp || last < 0) return;
+  Back back(sweep, last, sweep.s.rows[rows + static_cast<std::size_t>(turn ^ 1)]);
+  for (int x = sweep.w - 1; x >= 0; --x) back.pixel(x);
+  back.finish();
+}
+
+template <bool kUp, bool kMasked>
+void run(const Sweep& sweep) {
+  sweep.in.params.diagonals ? run<kUp, kMasked, true>(sweep) : run<kUp, kMasked, false>(sweep);
+}
+
 void sweep(const SemiGlobal& in, Scratch& scratch, const SemiGlobalMatch& out, int thread, int threads, bool up) {
-  Sweep(in, scratch, out, thread, threads, up).run();
+  const Sweep here(in, scratch, out, thread, threads, up);
+  const bool masked = !in.left.outside.empty();
+  if (up)
+    masked ? run<true, true>(here) : run<true, false>(here);
+  else
+    masked ? run<false, true>(here) : run<false, false>(here);
 }
 
 }  // namespace duo::HWY_NAMESPACE
@@ -328,7 +394,7 @@ SemiGlobalScratch::SemiGlobalScratch(Size size, int max_disparity, const SemiGlo
     : lanes(padding(max_disparity)),
       stride(lanes + kGap),
       none({lanes + 2 * kGap, 1}),
-      rows(static_cast<std::size_t>(threads)) {
+      rows(2 * static_cast<std::size_t>(threads)) {
   const int directions = params.diagonals ? 3 : 1;
   const auto fill = [](Image<std::uint8_t>& image) {
     for (int y = 0; y < image.height(); ++y) std::memset(image.row(y), 255, static_cast<std::size_t>(image.width()));
@@ -341,8 +407,10 @@ SemiGlobalScratch::SemiGlobalScratch(Size size, int max_disparity, const SemiGlo
   for (Row& row : rows) {
     row.sums = Image<std::uint8_t>({size.width * lanes, 1});
     row.costs = Image<std::uint8_t>({size.width * lanes, 1});
-    row.path = Image<std::uint8_t>({lanes + 2 * kGap, 2});
-    fill(row.path);
+    for (Image<std::uint8_t>* path : {&row.along, &row.back}) {
+      *path = Image<std::uint8_t>({lanes + 2 * kGap, 2});
+      fill(*path);
+    }
     row.totals = Image<std::uint8_t>({lanes + 2 * kGap, 1});
     row.best = Image<std::uint8_t>({lanes + size.width, 1});
     row.winner = Image<std::uint8_t>({lanes + size.width, 1});
@@ -355,7 +423,7 @@ void semi_global(Pool& pool, const SemiGlobal& in, SemiGlobalScratch& scratch, c
   const Size size = in.left.size();
   DUO_CHECK(in.max_disparity >= 1 && in.max_disparity <= 256 && scratch.lanes == SemiGlobalScratch::padding(in.max_disparity));
   DUO_CHECK(out.left.size() == size && out.right.size() == size && out.fine.size() == size);
-  DUO_CHECK(static_cast<int>(scratch.rows.size()) >= pool.threads());
+  DUO_CHECK(static_cast<int>(scratch.rows.size()) >= 2 * pool.threads());
   const int threads = std::min(pool.threads(), size.height);
   for (const bool up : {true, false}) {
     if (up && !in.params.upward) continue;

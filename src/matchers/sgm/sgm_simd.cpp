@@ -1,0 +1,41 @@
+#include "matchers/sgm/sgm.h"
+
+#include "stages/balance/balance.h"
+#include "stages/check_left_right/check_left_right.h"
+#include "stages/match_planes/match_planes.h"
+
+namespace duo::simd {
+
+Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
+    : pool_(pool),
+      params_(params),
+      max_disparity_(setup.max_disparity),
+      maps_(setup.size),
+      left_(setup.size, SemiGlobalScratch::padding(setup.max_disparity), setup.masked),
+      right_(setup.size, SemiGlobalScratch::padding(setup.max_disparity), setup.masked),
+      scratch_(setup.size, setup.max_disparity, params.semi_global(), pool.threads()),
+      speckle_scratch_(setup.size),
+      smooth_scratch_(setup.size) {}
+
+void Sgm::match(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer) {
+  simd::balance(pool_, pair, maps_.balanced);
+  timer.stage("balance");
+  simd::match_planes(pool_, pair.left, pair.left_inside, left_);
+  simd::match_planes(pool_, maps_.balanced, pair.right_inside, right_);
+  timer.stage("match_planes");
+  const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, params_.semi_global()};
+  simd::semi_global(pool_, in, scratch_, {maps_.left_winner, maps_.right_winner, maps_.fine});
+  timer.stage("semi_global");
+  // The weighted median writes to another image than it reads: the check starts in the one from which it ends in d_q4.
+  const View<std::uint16_t> checked = params_.smooth != 0 ? maps_.checked.view() : d_q4;
+  simd::check_left_right(
+      pool_, {maps_.left_winner, maps_.right_winner, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach},
+      maps_.fine, checked);
+  timer.stage("check_left_right");
+  simd::remove_speckle(pool_, checked, params_.speckle_step_q4, params_.speckle, speckle_scratch_);
+  timer.stage("speckle");
+  if (params_.smooth != 0) simd::weighted_median(pool_, {checked, pair.left}, smooth_scratch_, d_q4);
+  timer.stage("weighted_median");
+}
+
+}  // namespace duo::simd

@@ -1,0 +1,145 @@
+#include "matchers/sgm/sgm.h"
+
+#include <cmath>
+#include <random>
+
+#include "tests/agree.h"
+
+namespace duo {
+namespace {
+
+/// A textured wall at 4 px with a box at 12 px in front of its middle third; the right camera is darker and has less contrast.
+struct Scene {
+  Image<std::uint8_t> left, right;
+  explicit Scene(Size size) : left(size), right(size) {
+    std::mt19937 rng(21);
+    Image<std::uint8_t> texture({size.width + 64, size.height});
+    test::fill(texture.view(), test::Fill::kRandom, rng);
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) {
+        left.at(y, x) = texture.at(y, x);
+        right.at(y, x) =
+            static_cast<std::uint8_t>(texture.at(y, x + (x * 3 > size.width && x * 3 < 2 * size.width ? 12 : 4)) * 7 / 10);
+      }
+  }
+};
+
+void expect_engines_agree(Size size, int max_disparity, int paths, bool masked) {
+  const Scene scene(size);
+  const SgmParams params = *sgm_params("default", {{"paths", paths}});
+  Image<std::uint8_t> inside = test::constant<std::uint8_t>(size, 255);
+  for (int y = 0; y < size.height; ++y) inside.at(y, 0) = 0;
+  GrayPair pair{scene.left, scene.right};
+  if (masked) pair.left_inside = inside, pair.right_inside = inside;
+  const MatchSetup setup{size, max_disparity, masked};
+  StageTimer timer;
+  Image<std::uint16_t> want(size);
+  ref::Sgm(params, setup).match(pair, want, timer);
+  test::each_target([&](const std::string& target) {
+    for (const int threads : {1, 2, 3, 5}) {
+      Pool pool(threads);
+      Image<std::uint16_t> got(size);
+      simd::Sgm matcher(pool, params, setup);
+      for (int frame = 0; frame < 2; ++frame) {  // a second frame must not see anything of the first
+        matcher.match(pair, got, timer);
+        test::expect_same<std::uint16_t>(want, got, "sgm simd " + target + " threads " + std::to_string(threads));
+      }
+    }
+  });
+}
+
+TEST(Sgm, EnginesAgree) {
+  for (const int paths : {3, 4, 5, 8})
+    for (const bool masked : {false, true}) {
+      expect_engines_agree({90, 30}, 20, paths, masked);
+      if (HasFailure()) return;
+    }
+  expect_engines_agree({33, 17}, 70, 3, true);
+  expect_engines_agree({1, 1}, 1, 8, true);
+  expect_engines_agree({5, 12}, 3, 3, false);
+}
+
+TEST(Sgm, FindsWallAndBoxInADarkerPicture) {
+  const Size size{150, 60};
+  const Scene scene(size);
+  Image<std::uint16_t> d_q4(size);
+  StageTimer timer;
+  Pool pool(1);
+  simd::Sgm(pool, *sgm_params("default", {}), {size, 32, false}).match({scene.left, scene.right}, d_q4, timer);
+  int right = 0, wrong = 0;
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 20; x < size.width - 8; ++x) {
+      if (d_q4.at(y, x) == Disparity::kNone) continue;
+      const int d = (d_q4.at(y, x) + 8) / 16;
+      (d == 4 || d == 12 ? right : wrong) += 1;
+    }
+  EXPECT_GT(right, 60 * 90);
+  EXPECT_LT(wrong, right / 100);
+}
+
+// A plane whose disparity rises by one pixel in 25 columns: every fraction must be as frequent as any other.
+TEST(Sgm, SubPixelIsNotDrawnToWholePixels) {
+  const Size size{440, 60};
+  std::mt19937 rng(9);
+  // Texture from smoothed noise at four times the resolution, so that it can be read between pixels.
+  constexpr int kFine = 4;
+  const int n = (size.width + 64) * kFine;
+  Image<std::uint8_t> left(size), right(size);
+  std::vector<float> noise(static_cast<std::size_t>(n)), smooth(static_cast<std::size_t>(n));
+  for (int y = 0; y < size.height; ++y) {
+    for (float& v : noise) v = static_cast<float>(rng() % 256);
+    for (int i = 0; i < n; ++i) {
+      float sum = 0, weight = 0;
+      for (int k = -6; k <= 6; ++k)
+        if (i + k >= 0 && i + k < n)
+          sum += noise[static_cast<std::size_t>(i + k)] * static_cast<float>(7 - std::abs(k)),
+              weight += static_cast<float>(7 - std::abs(k));
+      smooth[static_cast<std::size_t>(i)] = 128 + 3 * (sum / weight - 128);
+    }
+    const auto at = [&](double x) {
+      const double p = std::clamp((x + 32) * kFine, 0.0, n - 2.0);
+      const int i = static_cast<int>(p);
+      return static_cast<std::uint8_t>(
+          std::clamp(smooth[static_cast<std::size_t>(i)] +
+                         (p - i) * (smooth[static_cast<std::size_t>(i) + 1] - smooth[static_cast<std::size_t>(i)]) + 0.5,
+                     0.0, 255.0));
+    };
+    for (int x = 0; x < size.width; ++x) {
+      right.at(y, x) = at(x);
+      left.at(y, x) = at((x - 4) / 1.04);  // x_right = x - d, d = 4 + 0.04 x_right
+    }
+  }
+  Image<std::uint16_t> d_q4(size);
+  StageTimer timer;
+  Pool pool(1);
+  simd::Sgm(pool, *sgm_params("default", {}), {size, 32, false}).match({left, right}, d_q4, timer);
+  int histogram[16] = {}, count = 0;
+  double error = 0;
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 30; x < 430; ++x) {
+      if (d_q4.at(y, x) == Disparity::kNone) continue;
+      ++histogram[d_q4.at(y, x) % 16];
+      ++count;
+      error += std::abs(d_q4.at(y, x) / 16.0 - (x - (x - 4) / 1.04));
+    }
+  EXPECT_GT(count, 60 * 400 * 9 / 10);
+  EXPECT_LT(error / count, 0.15);
+  for (int f = 0; f < 16; ++f) {
+    EXPECT_GT(histogram[f], count / 16 / 3) << f;
+    EXPECT_LT(histogram[f], count / 16 * 2) << f;
+  }
+}
+
+TEST(Sgm, ParametersAreChecked) {
+  EXPECT_TRUE(sgm_params("default", {}));
+  EXPECT_TRUE(sgm_params("paths8", {{"paths", 5}}));
+  EXPECT_FALSE(sgm_params("other", {}));
+  EXPECT_FALSE(sgm_params("default", {{"paths", 6}}));
+  EXPECT_FALSE(sgm_params("default", {{"p1", 30}}));
+  EXPECT_FALSE(sgm_params("default", {{"p2", 10}}));
+  EXPECT_FALSE(sgm_params("default", {{"p2", 113}}));
+  EXPECT_FALSE(sgm_params("default", {{"window", 1}}));
+}
+
+}  // namespace
+}  // namespace duo
