@@ -90,8 +90,8 @@ class Clip {
     }
     EXPECT_TRUE(started);
   }
-  std::unique_ptr<Tracker> tracker() const {
-    auto out = std::move(*make_tracker("arm", "default"));
+  std::unique_ptr<Tracker> tracker(const char* preset = "default") const {
+    auto out = std::move(*make_tracker("arm", preset));
     const auto prepared = out->prepare({rig, geometry(), 1.0 / 30});
     EXPECT_TRUE(prepared) << prepared.error().what;
     return out;
@@ -193,6 +193,20 @@ TEST_P(Clips, AccurateHonestAndRepeatable) {
       });
   EXPECT_EQ(allocated, 0);
   scores.expect_within(GetParam());
+}
+
+// Blobs are lost and looked for again, and SIFT finds as many points as it likes: none of that asks for memory.
+TEST_P(Clips, ThesisPresetDoesNotAllocate) {
+  const auto tracker = clip_.tracker("thesis");
+  long allocated = 0;
+  clip_.run(
+      1, 40, [&](const Frame& frame, const TrueArms& truth) { select(*tracker, frame, {clicks_on(truth[0])}); },
+      [&](const Frame& frame, const TrueArms&) {
+        const long before = test::allocations;
+        tracker->track(frame);
+        allocated += test::allocations - before;
+      });
+  EXPECT_EQ(allocated, 0);
 }
 
 // Each arm keeps its own hand while the other is followed too.
