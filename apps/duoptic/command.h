@@ -36,6 +36,7 @@ Command add_eval_clip(CLI::App& eval);
 Command add_bench(CLI::App& app);
 Command add_demo(CLI::App& app);
 Command add_synth(CLI::App& app);
+Command add_calibrate(CLI::App& app);
 Command add_rig(CLI::App& app);
 Command add_version(CLI::App& app);
 
@@ -43,7 +44,7 @@ Command add_version(CLI::App& app);
 struct EngineOptions {
   std::string engine = "auto";
   int threads;  // all that the machine has
-  std::string matcher = "pyramid", preset = "default";
+  std::string matcher = "sgm", preset = "default";
   std::vector<std::string> set;  // NAME=VALUE
   std::string denoise = "auto";
   bool fill = false;

@@ -1,0 +1,87 @@
+// Calibration: pictures of a board in, a rig out that says how good it is.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "duoptic/board.h"
+#include "duoptic/frame.h"
+#include "duoptic/rig.h"
+
+namespace duo {
+
+/// A corner of the board in a picture.
+struct BoardCorner {
+  int id = 0;
+  double x_px = 0, y_px = 0;
+  double dx_px = 0, dy_px = 0;  // after calibration: seen minus predicted
+};
+
+/// One pair of pictures with a board in it.
+struct BoardView {
+  std::string name;
+  std::vector<BoardCorner> left, right;  // in order of their ids; empty where the board was not found
+  double sharp_px = 0;                   // how far an edge of the board is spread, the worse of both pictures
+  bool used = false;                     // by the calibration
+  std::string why_not;                   // one line when it was not
+};
+
+struct Calibration {
+  Rig rig;
+  std::vector<BoardView> views;  // all in which a board was found
+  double held_out_shape_m = 0;   // held-out boards measured with the rig: rms distance of their corners from the true shape,
+  double held_out_z_m = 0;       // and how far they were, on average
+  std::vector<std::string> warnings;
+};
+
+/// Collects views of a board, from files or from live cameras alike, and calibrates.
+///
+/// Corners are OpenCV's, made exact by our own refinement; each camera is first calibrated alone (Zhang, 2000, OpenCV's
+/// calibrateCamera), then everything at once: both lenses, the pose between them and the board's pose in every view, by a
+/// bundle adjustment that gives less weight to corners that do not fit (Huber), rejects views that do not, and has one noise
+/// level a camera. The uncertainty is the covariance of that adjustment, scaled by its residuals (Hartley & Zisserman,
+/// "Multiple View Geometry", ch. 5.2 and A6). It assumes that corners err independently. A second one does not, the jackknife
+/// over views (Efron & Stein, "The jackknife estimate of variance", 1981): how far the result moves when each view is left out.
+/// Of each quantity the larger of the two is given. Neither knows of a print whose squares are not as large as said.
+class Calibrator {
+ public:
+  Calibrator(const Board& board, Size size);
+  Calibrator(Calibrator&&) noexcept;
+  ~Calibrator();
+
+  /// Looks for the board in both pictures and keeps what it finds.
+  ///
+  /// Errors  the pictures do not have the size of the first
+  Result<const BoardView*> add(const Pair& pair, const std::string& name);
+
+  int pairs() const;  // looked at
+  const std::vector<BoardView>& views() const;
+
+  /// Share of a camera's picture (0 left, 1 right), 12x9 cells, that has corners.
+  double coverage(int camera) const;
+
+  /// Errors  one line that says what is missing or wrong: too few views, all of one pose, blurred, another board than named,
+  /// left and right swapped, a mirrored picture, pairs that do not belong together, a fit too bad to be used
+  Result<Calibration> solve() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// What a rig can do, for its user.
+struct RigDescription {
+  double common_degrees = 0;  // width of what both cameras see at 2 m
+  double common_share = 0;    // of the left picture that the right camera sees, too, at 2 m
+  Size rectified;             // size of the rectified pictures
+  int max_disparity = 0;      // to search, so that depth begins at `near_m`
+  double near_m = 0;
+  std::array<double, 3> step_m{};  // by how much depth changes with a quarter pixel of disparity, at 1, 2 and 3 m
+};
+
+/// Errors  those of every rig; near_m not above zero
+Result<RigDescription> describe_rig(const Rig& rig, double near_m);
+
+}  // namespace duo

@@ -1,0 +1,137 @@
+#include "calib/find_board.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace duo {
+namespace {
+
+/// Distance of neighbours on the board, mean over those that were found.
+double spacing_px(const Board& board, const std::vector<BoardCorner>& corners) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 1; i < corners.size(); ++i)
+    if (corners[i].id == corners[i - 1].id + 1 && corners[i].id % board.inner_columns() != 0) {
+      sum += std::hypot(corners[i].x_px - corners[i - 1].x_px, corners[i].y_px - corners[i - 1].y_px);
+      ++count;
+    }
+  return count > 0 ? sum / count : 0;
+}
+
+FoundBoard find_chessboard(const cv::Mat& gray, const Board& board) {
+  FoundBoard found;
+  const cv::Size size(board.inner_columns(), board.inner_rows());
+  std::vector<cv::Point2f> corners;
+  constexpr int kFlags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
+  // Pictures without a board are told by the fast check; only those that pass it and still fail are searched the long way.
+  if (!cv::findChessboardCorners(gray, size, corners, kFlags | cv::CALIB_CB_FAST_CHECK)) {
+    if (!cv::checkChessboard(gray, size)) return found;
+    if (!cv::findChessboardCorners(gray, size, corners, kFlags) && !cv::findChessboardCornersSB(gray, size, corners))
+      return found;
+  }
+  // A chessboard looks the same after half a turn: of both numberings take the one that runs to the right, in both pictures.
+  const cv::Point2f along = corners.back() - corners.front();
+  if (along.x + along.y < 0) std::reverse(corners.begin(), corners.end());
+  for (std::size_t i = 0; i < corners.size(); ++i) found.corners.push_back({static_cast<int>(i), corners[i].x, corners[i].y});
+  return found;
+}
+
+/// The four markers nearest to a corner that were seen give the map from the board to the picture around it.
+FoundBoard corners_between(const std::vector<Marker>& markers, const Board& board, cv::Size size) {
+  FoundBoard found;
+  for (int id = 0; id < board.corners(); ++id) {
+    const cv::Point2d at(id % board.inner_columns(), id / board.inner_columns());
+    std::vector<std::pair<double, const Marker*>> near;
+    for (const Marker& marker : markers) {
+      const cv::Point2d centre = marker_place(board, marker.id) + cv::Point2d(0.5, 0.5) * board.marker_share;
+      near.emplace_back(cv::norm(centre - at), &marker);
+    }
+    std::sort(near.begin(), near.end());
+    if (near.size() > 4) near.resize(4);
+    if (near.empty() || near[0].first > 1) continue;  // no marker touches the corner
+    std::vector<cv::Point2f> on_board, in_picture;
+    for (const auto& [distance, marker] : near) {
+      const cv::Point2d place = marker_place(board, marker->id);
+      const double s = board.marker_share;
+      for (const cv::Point2d offset : {cv::Point2d(0, 0), cv::Point2d(s, 0), cv::Point2d(s, s), cv::Point2d(0, s)})
+        on_board.emplace_back(place + offset);
+      in_picture.insert(in_picture.end(), marker->corners.begin(), marker->corners.end());
+    }
+    const cv::Mat map = cv::findHomography(on_board, in_picture);
+    if (map.empty()) continue;
+    std::vector<cv::Point2f> place{at}, pixel;
+    cv::perspectiveTransform(place, pixel, map);
+    if (cv::Rect2f(2, 2, static_cast<float>(size.width - 5), static_cast<float>(size.height - 5)).contains(pixel[0]))
+      found.corners.push_back({id, pixel[0].x, pixel[0].y});
+  }
+  constexpr std::size_t kEnough = 6;
+  if (found.corners.size() < kEnough) found.corners.clear();
+  return found;
+}
+
+}  // namespace
+
+FoundBoard find_board(const cv::Mat& gray, const Board& board) {
+  FoundBoard found;
+  try {
+    found = board.kind == Board::Kind::kChessboard ? find_chessboard(gray, board)
+                                                   : corners_between(find_markers(gray, board), board, gray.size());
+    found.spacing_px = spacing_px(board, found.corners);
+    if (found.spacing_px > 0) refine_corners(gray, board, found);
+  } catch (const cv::Exception&) {
+    found = {};  // a picture that OpenCV cannot take has no board
+  }
+  return found;
+}
+
+double edge_spread_px(const cv::Mat& gray, const Board& board, const FoundBoard& found) {
+  std::vector<double> spreads;
+  for (std::size_t i = 1; i < found.corners.size(); ++i) {
+    const BoardCorner &a = found.corners[i - 1], &b = found.corners[i];
+    if (b.id != a.id + 1 || b.id % board.inner_columns() == 0) continue;
+    const cv::Point2d along(b.x_px - a.x_px, b.y_px - a.y_px), middle = {(a.x_px + b.x_px) / 2, (a.y_px + b.y_px) / 2};
+    const double length = cv::norm(along), reach = 0.4 * length;
+    const cv::Point2d across(-along.y / length, along.x / length);
+    cv::Mat profile;
+    constexpr int kSamples = 65, kMean = 9;
+    cv::Mat map_x(kMean, kSamples, CV_32F), map_y(kMean, kSamples, CV_32F);
+    for (int v = 0; v < kMean; ++v)
+      for (int u = 0; u < kSamples; ++u) {
+        const cv::Point2d p =
+            middle + (reach * (2.0 * u / (kSamples - 1) - 1)) * across + (0.5 * (v + 0.5 - kMean / 2.0) / kMean) * along;
+        map_x.at<float>(v, u) = static_cast<float>(p.x);
+        map_y.at<float>(v, u) = static_cast<float>(p.y);
+      }
+    cv::Mat patch;
+    cv::remap(gray, patch, map_x, map_y, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+    cv::reduce(patch, profile, 0, cv::REDUCE_AVG, CV_32F);
+    double low = 0, high = 0;
+    cv::minMaxLoc(profile, &low, &high);
+    int between = 0;
+    for (int u = 0; u < kSamples; ++u) {
+      const double value = (profile.at<float>(u) - low) / std::max(1.0, high - low);
+      between += value > 0.25 && value < 0.75;
+    }
+    spreads.push_back(2 * reach * between / (kSamples - 1));
+  }
+  if (spreads.empty()) return 0;
+  std::nth_element(spreads.begin(), spreads.begin() + spreads.size() / 2, spreads.end());
+  return spreads[spreads.size() / 2];
+}
+
+std::string name_any_chessboard(const cv::Mat& gray) {
+  try {
+    std::vector<cv::Point2f> corners;
+    cv::Mat seen;
+    if (!cv::findChessboardCornersSB(gray, {3, 3}, corners, cv::CALIB_CB_LARGER, seen) || seen.empty()) return "";
+    return fmt::format("{}x{}", std::max(seen.cols, seen.rows), std::min(seen.cols, seen.rows));
+  } catch (const cv::Exception&) {
+    return "";
+  }
+}
+
+}  // namespace duo
