@@ -133,6 +133,13 @@ double tukey_weight(double error_px, double sigma_px) {
   return std::abs(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;  // 0 for NaN
 }
 
+double huber_weight(double error_px, double sigma_px) {
+  const double u = std::abs(error_px) / (1.345 * sigma_px);
+  return u <= 1 ? 1 : u > 1 ? 1 / u : 0;  // 0 for NaN
+}
+
+using Weight = double (*)(double error_px, double sigma_px);
+
 /// The normal equations of one round.
 struct Equations {
   Eigen::MatrixXd information;
@@ -140,14 +147,14 @@ struct Equations {
   double sigma_px = 0;  // of the matches' errors
 };
 
-Equations equations_at(const Problem& problem, const SceneFreedom& freedom, const ScenePlace& at) {
+Equations equations_at(const Problem& problem, const SceneFreedom& freedom, Weight weight_of, const ScenePlace& at) {
   const auto parts = static_cast<Eigen::Index>(problem.free().size());
   const std::vector<double> errors = problem.errors(at);
   const Eigen::MatrixXd slopes = problem.slopes(at);
   Equations out{Eigen::MatrixXd::Zero(parts, parts), Eigen::VectorXd::Zero(parts), robust_sigma_px(errors)};
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const auto slope = slopes.row(static_cast<Eigen::Index>(i));
-    const double weight = tukey_weight(errors[i], out.sigma_px) / (out.sigma_px * out.sigma_px * problem.repeats());
+    const double weight = weight_of(errors[i], out.sigma_px) / (out.sigma_px * out.sigma_px * problem.repeats());
     if (weight == 0 || !slope.allFinite()) continue;
     out.information += weight * slope.transpose() * slope;
     out.pull -= weight * errors[i] * slope.transpose();
@@ -168,13 +175,13 @@ struct Solution {
 };
 
 /// Gauss-Newton from a place near the solution.
-Result<Solution> solve(const Problem& problem, const SceneFreedom& freedom, ScenePlace at) {
+Result<Solution> solve(const Problem& problem, const SceneFreedom& freedom, Weight weight_of, ScenePlace at) {
   constexpr int kRounds = 100;
   constexpr double kLongestStep = 0.3, kConverged = 1e-9;
   const auto parts = static_cast<Eigen::Index>(problem.free().size());
   Equations equations;
   for (int round = 0; round < kRounds; ++round) {
-    equations = equations_at(problem, freedom, at);
+    equations = equations_at(problem, freedom, weight_of, at);
     Eigen::VectorXd step = equations.information.ldlt().solve(equations.pull);
     if (!step.allFinite()) return Error{ErrorCode::kBadInput, "no pose fits the points of the scene; show one with more depth"};
     double longest = 0;  // in standard deviations; the problem is far from linear in the focal length
@@ -244,11 +251,13 @@ Result<ScenePose> fit_scene_pose(const Rig& start, const SceneFreedom& freedom, 
   if (lens_free) {  // a lens that is free from the start runs away before the pose is near
     SceneFreedom lens_held = freedom;
     lens_held[kFocal] = lens_held[kFocalRatio] = lens_held[kBend] = 0;
-    DUO_TRY_ASSIGN(const Solution first, solve(Problem(start, lens_held, matches, repeats), lens_held, near));
+    DUO_TRY_ASSIGN(const Solution first, solve(Problem(start, lens_held, matches, repeats), lens_held, huber_weight, near));
     near = first.at;
   }
   const Problem problem(start, freedom, matches, repeats);
-  DUO_TRY_ASSIGN(const Solution solution, solve(problem, freedom, near));
+  // Tukey's weights alone could settle where the points of one surface agree and all nearer ones count as wrong.
+  DUO_TRY_ASSIGN(const Solution fair, solve(problem, freedom, huber_weight, near));
+  DUO_TRY_ASSIGN(const Solution solution, solve(problem, freedom, tukey_weight, fair.at));
 
   ScenePose pose;
   pose.rig = moved(start, solution.at);
