@@ -43,14 +43,22 @@ double tilt_rad(const Bundle& bundle) {
   return most;
 }
 
+/// A chessboard's corners look the same after half a turn: numbers the right ones so that the board runs the same way in both.
+void number_alike(const Board& board, const std::vector<BoardCorner>& left, std::vector<BoardCorner>& right) {
+  if (board.kind != Board::Kind::kChessboard || left.empty() || right.empty()) return;
+  const auto along = [](const std::vector<BoardCorner>& c) {
+    return cv::Point2d(c.back().x_px - c.front().x_px, c.back().y_px - c.front().y_px);
+  };
+  if (along(left).dot(along(right)) >= 0) return;
+  std::reverse(right.begin(), right.end());
+  for (BoardCorner& corner : right) corner.id = board.corners() - 1 - corner.id;
+}
+
 /// The same corners had the picture not been mirrored.
 std::vector<BoardCorner> mirrored(const std::vector<BoardCorner>& corners, const Board& board, Size size) {
   std::vector<BoardCorner> out = corners;
   const int columns = board.inner_columns();
-  for (BoardCorner& c : out) {
-    c.x_px = size.width - 1 - c.x_px;
-    if (board.kind == Board::Kind::kChessboard) c.id = c.id / columns * columns + (columns - 1 - c.id % columns);
-  }
+  for (BoardCorner& c : out) c.x_px = size.width - 1 - c.x_px, c.id = c.id / columns * columns + (columns - 1 - c.id % columns);
   std::sort(out.begin(), out.end(), [](const BoardCorner& a, const BoardCorner& b) { return a.id < b.id; });
   return out;
 }
@@ -124,6 +132,7 @@ BoardView Calibrator::State::look(const Pair& pair, const std::string& name) {
     }
     (left ? view.left : view.right) = std::move(found.corners);
   }
+  number_alike(board, view.left, view.right);
   if (view.left.size() < kMinCorners || view.right.size() < kMinCorners)
     view.why_not = view.left.empty() && view.right.empty() ? "no board found"
                    : view.left.size() < kMinCorners        ? "board not found in the left picture"
@@ -176,6 +185,7 @@ Error Calibrator::State::disagreeing(const std::vector<const BoardView*>& used) 
   for (const BoardView* view : used) {
     flipped.push_back(*view);
     flipped.back().right = mirrored(view->right, board, size);
+    number_alike(board, flipped.back().left, flipped.back().right);
   }
   std::vector<const BoardView*> pointers;
   for (const BoardView& view : flipped) pointers.push_back(&view);

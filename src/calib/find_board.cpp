@@ -33,9 +33,6 @@ FoundBoard find_chessboard(const cv::Mat& gray, const Board& board) {
     if (!cv::findChessboardCorners(gray, size, corners, kFlags) && !cv::findChessboardCornersSB(gray, size, corners))
       return found;
   }
-  // A chessboard looks the same after half a turn: of both numberings take the one that runs to the right, in both pictures.
-  const cv::Point2f along = corners.back() - corners.front();
-  if (along.x + along.y < 0) std::reverse(corners.begin(), corners.end());
   for (std::size_t i = 0; i < corners.size(); ++i) found.corners.push_back({static_cast<int>(i), corners[i].x, corners[i].y});
   return found;
 }

@@ -14,24 +14,26 @@ constexpr double kReach = 0.75;   // along the edges, of a square; the next corn
 constexpr double kMaxMove = 0.3;  // of a square, from where the corner was found
 
 /// Map from the board, in squares around the corner, to the picture, from the corner's neighbours; empty when they do not span
-/// it.
+/// it. The nearest ones when there are enough: a lens bends what lies further off.
 cv::Mat local_map(const Board& board, const FoundBoard& found, const BoardCorner& corner) {
   const int columns = board.inner_columns();
-  std::vector<cv::Point2f> on_board, in_picture;
-  for (const BoardCorner& other : found.corners) {
-    const int dx = other.id % columns - corner.id % columns, dy = other.id / columns - corner.id / columns;
-    if (std::max(std::abs(dx), std::abs(dy)) > 2) continue;
-    on_board.emplace_back(static_cast<float>(dx), static_cast<float>(dy));
-    in_picture.emplace_back(static_cast<float>(other.x_px), static_cast<float>(other.y_px));
+  for (const int reach : {1, 2}) {
+    std::vector<cv::Point2f> on_board, in_picture;
+    for (const BoardCorner& other : found.corners) {
+      const int dx = other.id % columns - corner.id % columns, dy = other.id / columns - corner.id / columns;
+      if (std::max(std::abs(dx), std::abs(dy)) > reach) continue;
+      on_board.emplace_back(static_cast<float>(dx), static_cast<float>(dy));
+      in_picture.emplace_back(static_cast<float>(other.x_px), static_cast<float>(other.y_px));
+    }
+    if (on_board.size() >= 6) return cv::findHomography(on_board, in_picture);
   }
-  if (on_board.size() < 5) return {};
-  return cv::findHomography(on_board, in_picture);
+  return {};
 }
 
 /// The point that the gradients beside both edges are orthogonal to, in pixels from the patch's centre.
-std::optional<cv::Point2d> crossing(const cv::Mat& patch, double pixels_a_square, double strip) {
+std::optional<cv::Point2d> crossing(const cv::Mat& patch, cv::Point2d start, double pixels_a_square, double strip) {
   const int half = patch.cols / 2;
-  cv::Point2d at(0, 0);
+  cv::Point2d at = start;
   for (int round = 0; round < 4; ++round) {
     double xx = 0, xy = 0, yy = 0, bx = 0, by = 0;
     for (int y = 1; y < patch.rows - 1; ++y)
@@ -48,7 +50,7 @@ std::optional<cv::Point2d> crossing(const cv::Mat& patch, double pixels_a_square
     const double det = xx * yy - xy * xy;
     if (!(det > 1e-3 * (xx + yy) * (xx + yy))) return {};
     at = {(yy * bx - xy * by) / det, (xx * by - xy * bx) / det};
-    if (!(cv::norm(at) < kMaxMove * pixels_a_square)) return {};
+    if (!(cv::norm(at - start) < kMaxMove * pixels_a_square)) return {};
   }
   return at;
 }
@@ -76,9 +78,11 @@ void refine_corners(const cv::Mat& gray, const Board& board, FoundBoard& found) 
       cv::warpPerspective(smooth, patch, picture_from_patch, {2 * half + 1, 2 * half + 1},
                           cv::INTER_CUBIC | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
       const double strip = std::min(0.6 * margin, 4 / found.spacing_px);
-      const auto at = crossing(patch, pixels_a_square, strip);
+      std::vector<cv::Point2d> from{{corner.x_px, corner.y_px}}, to;
+      cv::perspectiveTransform(from, to, picture_from_patch.inv());
+      const auto at = crossing(patch, to[0] - cv::Point2d(half, half), pixels_a_square, strip);
       if (!at) continue;
-      std::vector<cv::Point2d> from{*at + cv::Point2d(half, half)}, to;
+      from[0] = *at + cv::Point2d(half, half);
       cv::perspectiveTransform(from, to, picture_from_patch);
       moved.push_back({corner.id, to[0].x, to[0].y});
     }
