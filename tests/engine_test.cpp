@@ -25,11 +25,18 @@ const Frame& run(Engine& engine, const Pair& pair) {
   return engine.collect();
 }
 
-duo::Setup raw_setup(const SyntheticPair& scene, const char* preset) {
+/// What a user can choose.
+struct Choice {
+  const char *matcher, *preset;
+};
+constexpr Choice kChoices[] = {{"sgm", "default"}, {"sgm", "paths8"}, {"pyramid", "default"}, {"pyramid", "thesis"}};
+
+duo::Setup raw_setup(const SyntheticPair& scene, const Choice& choice) {
   duo::Setup setup;
   setup.size = scene.pair.left.pixels.size();
   setup.rig = scene.rig;
-  setup.preset = preset;
+  setup.matcher = choice.matcher;
+  setup.preset = choice.preset;
   setup.max_disparity = 48;
   setup.denoise = Denoise::kBoth;
   setup.fill = true;
@@ -41,15 +48,16 @@ TEST(Engine, RefAndSimdAgreeOnRawPictures) {
   SyntheticSetup synthetic;
   synthetic.size = {160, 120};
   const SyntheticPair scene = render_synthetic(synthetic, 2);
-  for (const char* preset : {"default", "thesis"}) {
-    const duo::Setup setup = raw_setup(scene, preset);
+  for (const Choice& choice : kChoices) {
+    const duo::Setup setup = raw_setup(scene, choice);
     const auto reference = prepared("ref", 1, setup);
     const Frame& want = run(*reference, scene.pair);
     test::each_target([&](const std::string& target) {
       for (const int threads : {1, 2}) {
         const auto simd = prepared("simd", threads, setup);
         const Frame& got = run(*simd, scene.pair);
-        const std::string who = std::string(preset) + " " + target + " threads " + std::to_string(threads);
+        const std::string who =
+            std::string(choice.matcher) + " " + choice.preset + " " + target + " threads " + std::to_string(threads);
         test::expect_same<std::uint8_t>(want.left, got.left, who + " left");
         test::expect_same<std::uint8_t>(want.right, got.right, who + " right");
         test::expect_same<std::uint16_t>(want.disparity.d_q4, got.disparity.d_q4, who + " disparity");
@@ -64,12 +72,12 @@ TEST(Engine, AllocatesNothingAfterTheFirstFrame) {
   SyntheticSetup synthetic;
   synthetic.size = {320, 240};
   const SyntheticPair scene = render_synthetic(synthetic, 2);
-  for (const char* preset : {"default", "thesis"}) {
-    const auto engine = prepared("simd", 2, raw_setup(scene, preset));
+  for (const Choice& choice : kChoices) {
+    const auto engine = prepared("simd", 2, raw_setup(scene, choice));
     run(*engine, scene.pair);
     const long before = test::allocations;
     for (int i = 0; i < 3; ++i) run(*engine, scene.pair);
-    EXPECT_EQ(test::allocations - before, 0) << preset;
+    EXPECT_EQ(test::allocations - before, 0) << choice.matcher << " " << choice.preset;
   }
   const long before = test::allocations;
   Image<std::uint8_t> counted({8, 8});
@@ -80,7 +88,8 @@ struct Score {
   double bad = 0, covered = 0;
 };
 
-/// Share of pixels that both cameras see whose disparity is off by more than one pixel, holes bad; and the share with a disparity.
+/// Share of pixels that both cameras see whose disparity is off by more than one pixel, holes bad; and the share with a
+/// disparity.
 Score score(const SyntheticPair& scene, const Disparity& disparity) {
   double seen = 0, bad = 0, known = 0;
   for (int y = 0; y < scene.disparity_px.height(); ++y)
@@ -101,22 +110,30 @@ TEST(Engine, MeetsTheTruthOfTheSyntheticRoom) {
   duo::Setup setup;
   setup.size = synthetic.size;
   setup.max_disparity = 96;
-  const auto engine = prepared("simd", 2, setup);
-  const Score now = score(scene, run(*engine, scene.pair).disparity);
-  EXPECT_LT(now.bad, 0.15);
-  EXPECT_GT(now.covered, 0.9);
-  setup.preset = "thesis";
-  const auto thesis = prepared("simd", 2, setup);
-  const Score then = score(scene, run(*thesis, scene.pair).disparity);
-  EXPECT_LT(then.bad, 0.4);
-  EXPECT_GT(then.bad, now.bad) << "the default preset is the better one";
+  Score scores[std::size(kChoices)];
+  for (std::size_t i = 0; i < std::size(kChoices); ++i) {
+    setup.matcher = kChoices[i].matcher;
+    setup.preset = kChoices[i].preset;
+    const auto engine = prepared("simd", 2, setup);
+    scores[i] = score(scene, run(*engine, scene.pair).disparity);
+  }
+  const auto& [sgm, paths8, pyramid, thesis] = scores;
+  EXPECT_LT(sgm.bad, 0.1);
+  EXPECT_GT(sgm.covered, 0.9);
+  EXPECT_LT(paths8.bad, 0.12);
+  EXPECT_LT(pyramid.bad, 0.15);
+  EXPECT_GT(pyramid.covered, 0.9);
+  EXPECT_LT(thesis.bad, 0.4);
+  EXPECT_GT(thesis.bad, pyramid.bad) << "the pyramid's default preset is its better one";
+  const auto wrong = [](const Score& s) { return s.bad - (1 - s.covered); };  // holes left out
+  EXPECT_GT(wrong(pyramid), wrong(sgm)) << "what the default matcher says is the more true";
 }
 
 // Metres, not only pixels: the raw pair through its rig gives the depth that the renderer knows at the same raw pixel.
 TEST(Engine, RawDepthIsMetric) {
   SyntheticSetup synthetic;
   const SyntheticPair scene = render_synthetic(synthetic, 2);
-  duo::Setup setup = raw_setup(scene, "default");
+  duo::Setup setup = raw_setup(scene, {"sgm", "default"});
   setup.max_disparity = 96;
   setup.fill = false;
   setup.denoise = Denoise::kAuto;

@@ -17,7 +17,8 @@ namespace {
 
 constexpr char kFooter[] =
     "The pair is our synthetic room seen by two distorted, noisy cameras. A whole frame goes from decoded pictures to depth:\n"
-    "denoise, rectify, match, check, depth. OpenCV gets the same rectified pair; its time is its matching call alone, and is\n"
+    "denoise, rectify, match, check, fill, depth. OpenCV gets the same rectified pair; its time is its matching call alone, "
+    "and is\n"
     "compared with our whole frame and with our matching alone. All contestants take turns in one process; medians.\n\n"
     "Examples:\n"
     "  duoptic bench\n"
@@ -61,18 +62,25 @@ void add_run(Contestant& c, const Frame& frame, Times whole) {
   c.matching.push_back(matching);
 }
 
+struct Choice {
+  const char *matcher, *preset;
+};
+constexpr Choice kChoices[] = {{"sgm", "default"}, {"sgm", "paths8"}, {"pyramid", "default"}, {"pyramid", "thesis"}};
+
 struct Ours {
   std::unique_ptr<Engine> engine;
   int repeat;
 };
 
-Result<Ours> make_ours(const std::string& engine_name, const std::string& preset, const SyntheticPair& input, int threads,
+Result<Ours> make_ours(const std::string& engine_name, const Choice& choice, const SyntheticPair& input, int threads,
                        int repeat) {
   DUO_TRY_ASSIGN(auto engine, make_engine(engine_name, threads));
   Setup setup;
   setup.size = input.pair.left.pixels.size();
   setup.rig = input.rig;
-  setup.preset = preset;
+  setup.matcher = choice.matcher;
+  setup.preset = choice.preset;
+  setup.fill = true;
   setup.max_disparity = kMaxDisparity;
   setup.wants = {.color = false, .depth = true};
   setup.time_stages = true;
@@ -86,10 +94,10 @@ Result<Table> measure(const SyntheticPair& input, int threads, const Options& op
   for (const char* engine : {"simd", "ref"}) {
     if (options.engine != "both" && options.engine != engine) continue;
     if (std::string(engine) == "ref" && threads > 1) continue;  // the definition runs on one thread
-    for (const char* preset : {"thesis", "default"}) {
-      DUO_TRY_ASSIGN(auto one, make_ours(engine, preset, input, threads, options.repeat));
+    for (const Choice& choice : kChoices) {
+      DUO_TRY_ASSIGN(auto one, make_ours(engine, choice, input, threads, options.repeat));
       ours.push_back(std::move(one));
-      table.ours.push_back({fmt::format("{} {}", engine, preset), {}, {}, {}});
+      table.ours.push_back({fmt::format("{} {} {}", engine, choice.matcher, choice.preset), {}, {}, {}});
     }
   }
   std::vector<PeerMatcher> peers;
@@ -153,15 +161,15 @@ nlohmann::json to_json(const Table& table) {
 void print(const Table& table) {
   fmt::print("\n{}x{}, {} disparities, {} thread{}\n", table.size.width, table.size.height, kMaxDisparity, table.threads,
              table.threads == 1 ? "" : "s");
-  fmt::print("{:<18} {:>9} {:>9} {:>9}   {}\n", "", "wall ms", "CPU ms", "frames/s", "stages, CPU ms");
+  fmt::print("{:<22} {:>9} {:>9} {:>9}   {}\n", "", "wall ms", "CPU ms", "frames/s", "stages, CPU ms");
   for (const Contestant& c : table.ours) {
     const Times whole = median(c.whole);
     std::string stages;
     for (const auto& [name, runs] : c.stages) stages += fmt::format("{} {:.1f}  ", name, median(runs).cpu_ms);
-    fmt::print("{:<18} {:9.1f} {:9.1f} {:9.1f}   {}\n", c.name, whole.wall_ms, whole.cpu_ms, 1000 / whole.wall_ms, stages);
+    fmt::print("{:<22} {:9.1f} {:9.1f} {:9.1f}   {}\n", c.name, whole.wall_ms, whole.cpu_ms, 1000 / whole.wall_ms, stages);
   }
   for (const Contestant& p : table.peers)
-    fmt::print("{:<18} {:9.1f} {:9.1f}             matching call alone\n", p.name, median(p.matching).wall_ms,
+    fmt::print("{:<22} {:9.1f} {:9.1f}             matching call alone\n", p.name, median(p.matching).wall_ms,
                median(p.matching).cpu_ms);
   for (const Contestant& c : table.ours)
     for (const Contestant& p : table.peers) {

@@ -12,6 +12,7 @@
 #include "duoptic/sink.h"
 #include "output.h"
 #include "peers.h"
+#include "perturb.h"
 #include "score.h"
 #include "timing.h"
 
@@ -29,7 +30,8 @@ constexpr char kFooter[] =
     "filled = each hole takes the smaller of its nearest neighbours on the row; holes bad = a hole counts as wrong.\n\n"
     "Examples:\n"
     "  duoptic eval middlebury data/middlebury\n"
-    "  duoptic eval middlebury teddy cones --preset thesis --no-peers --json";
+    "  duoptic eval middlebury teddy cones --preset thesis --no-peers --json\n"
+    "  duoptic eval middlebury data/middlebury --perturb";
 
 // The thesis's own table: bad-1.0, per cent, nonocc / all / disc.
 const std::map<std::string, std::array<double, 3>> kThesis = {{"tsukuba", {33.2, 32.4, 27.6}},
@@ -41,7 +43,7 @@ constexpr double kThesisMean = 32.5;
 struct Options {
   std::vector<std::string> folders;
   std::string output;
-  bool no_peers = false, json = false;
+  bool no_peers = false, perturb = false, json = false;
   EngineOptions engine;
 };
 
@@ -55,9 +57,9 @@ struct MethodScores {
   std::vector<SceneScore> scenes;
 };
 
-Result<Image<float>> match(const Scene& scene, const Options& options, double& ms) {
-  DUO_TRY_ASSIGN(const auto engine, make_engine(options.engine.engine, options.engine.threads));
-  Setup setup = options.engine.setup();
+Result<Image<float>> match(const Scene& scene, const EngineOptions& options, double& ms) {
+  DUO_TRY_ASSIGN(const auto engine, make_engine(options.engine, options.threads));
+  Setup setup = options.setup();
   setup.size = scene.pair.left.pixels.size();
   setup.max_disparity = scene.max_disparity;
   DUO_TRY(engine->prepare(setup));
@@ -167,6 +169,88 @@ void print_means(const std::vector<MethodScores>& methods, bool v2) {
   fmt::print("\n\"tuned\" is the best of a grid search on these four scenes; it flatters OpenCV.\n");
 }
 
+/// Our two matchers and OpenCV's 3WAY on the scenes with one fault; scores in the order of `names`.
+struct Contest {
+  std::vector<EngineOptions> ours;
+  std::vector<Peer> peers;
+  std::vector<std::string> names;
+};
+
+Contest contest(const EngineOptions& options) {
+  Contest out;
+  for (const std::string& matcher : matcher_names()) {
+    EngineOptions one = options;
+    if (matcher != options.matcher) one.preset = "default", one.set.clear();
+    one.matcher = matcher;
+    out.ours.push_back(one);
+    out.names.push_back(fmt::format("duoptic {} {}", one.matcher, one.preset));
+  }
+  for (const Peer& peer : accuracy_peers())
+    if (peer.kind == Peer::Kind::k3Way) out.peers.push_back(peer), out.names.push_back(fmt::format("OpenCV {}", peer.name));
+  return out;
+}
+
+Result<std::vector<MethodScores>> score_contest(const Contest& contest, const std::vector<Scene>& scenes,
+                                                const Perturbation& how) {
+  std::vector<MethodScores> out;
+  for (const std::string& name : contest.names) out.push_back({name, {}});
+  for (const Scene& scene : scenes) {
+    Scene worse{scene.name, perturb(scene.pair, how), scene.max_disparity, scene.truth_px.clone(), {}};
+    worse.regions = {scene.regions.all.clone(), scene.regions.nonocc.clone(), scene.regions.disc.clone()};
+    for (std::size_t i = 0; i < contest.ours.size(); ++i) {
+      double ms = 0;
+      DUO_TRY_ASSIGN(const Image<float> d_px, match(worse, contest.ours[i], ms));
+      out[i].scenes.push_back({scene.name, score(d_px, worse), ms});
+    }
+    for (std::size_t i = 0; i < contest.peers.size(); ++i)
+      out[contest.ours.size() + i].scenes.push_back(score_peer(contest.peers[i], worse, contest.ours[0].threads));
+  }
+  return out;
+}
+
+Result<Exit> run_perturbed(const Options& options) {
+  DUO_TRY_ASSIGN(const auto folders, find_scenes({options.folders.begin(), options.folders.end()}));
+  std::vector<Scene> scenes;
+  for (const fs::path& folder : folders) {
+    DUO_TRY_ASSIGN(Scene scene, load_scene(folder));
+    scenes.push_back(std::move(scene));
+  }
+  const Contest all = contest(options.engine);
+  DUO_TRY_ASSIGN(const auto clean, score_contest(all, scenes, {.name = "as they are"}));
+  nlohmann::json rows = nlohmann::json::array();
+  if (!options.json) {
+    fmt::print(
+        "Bad-1.0 in %, holes filled by the scorer / holes bad, mean over all scenes and regions; with a fault: what is "
+        "added\n{:<16}",
+        "");
+    for (const std::string& name : all.names) fmt::print(" {:>24}", name);
+    fmt::print("\n{:<16}", "as they are");
+    for (const MethodScores& m : clean)
+      fmt::print(" {:>24}", fmt::format("{:.2f} / {:.2f}", mean(m, filled, 1), mean(m, holes_bad, 1)));
+    fmt::print("\n");
+  }
+  for (const Perturbation& how : perturbations()) {
+    DUO_TRY_ASSIGN(const auto worse, score_contest(all, scenes, how));
+    nlohmann::json row = {{"fault", how.name}, {"methods", nlohmann::json::array()}};
+    if (!options.json) fmt::print("{:<16}", how.name);
+    for (std::size_t i = 0; i < worse.size(); ++i) {
+      const double more_filled = mean(worse[i], filled, 1) - mean(clean[i], filled, 1);
+      const double more_holes = mean(worse[i], holes_bad, 1) - mean(clean[i], holes_bad, 1);
+      row["methods"].push_back(
+          {{"method", worse[i].method}, {"added_filled_percent", more_filled}, {"added_holes_percent", more_holes}});
+      if (!options.json) fmt::print(" {:>24}", fmt::format("{:+.2f} / {:+.2f}", more_filled, more_holes));
+    }
+    rows.push_back(row);
+    if (!options.json) fmt::print("\n");
+  }
+  if (options.json) {
+    nlohmann::json base = nlohmann::json::array();
+    for (const MethodScores& m : clean) base.push_back(to_json(m));
+    fmt::print("{}\n", nlohmann::json{{"clean", base}, {"perturbed", rows}}.dump(2));
+  }
+  return Exit::kOk;
+}
+
 Result<Exit> run(const Options& options) {
   DUO_TRY_ASSIGN(const auto folders, find_scenes({options.folders.begin(), options.folders.end()}));
   std::vector<MethodScores> methods = {{fmt::format("duoptic {} {}", options.engine.matcher, options.engine.preset), {}}};
@@ -175,7 +259,7 @@ Result<Exit> run(const Options& options) {
   for (const fs::path& folder : folders) {
     DUO_TRY_ASSIGN(const Scene scene, load_scene(folder));
     double ms = 0;
-    DUO_TRY_ASSIGN(const Image<float> d_px, match(scene, options, ms));
+    DUO_TRY_ASSIGN(const Image<float> d_px, match(scene, options.engine, ms));
     methods[0].scenes.push_back({scene.name, score(d_px, scene), ms});
     for (std::size_t i = 1; i < methods.size(); ++i)
       methods[i].scenes.push_back(score_peer(accuracy_peers()[i - 1], scene, options.engine.threads));
@@ -211,11 +295,16 @@ Command add_eval(CLI::App& app) {
   middlebury->add_option("DIR", options->folders, "Scene, or folder of scenes")->required();
   options->engine.add_to(*middlebury);
   middlebury->add_flag("--no-peers", options->no_peers, "Do not run OpenCV's matchers");
+  middlebury->add_flag("--perturb", options->perturb,
+                       "What a gain of 0.8, noise and a row error of 0.5 px add, for each matcher and OpenCV's 3WAY");
   middlebury->add_flag("--json", options->json, "Print the scores as JSON");
   middlebury->add_option("-o,--output", options->output, "Folder for pictures of the errors")->type_name("DIR");
   middlebury->footer(kFooter);
   const Command clip = add_eval_clip(*sub);
-  return {sub, [options, clip] { return clip.app->parsed() ? clip.run() : run(*options); }};
+  return {sub, [options, clip] {
+            if (clip.app->parsed()) return clip.run();
+            return options->perturb ? run_perturbed(*options) : run(*options);
+          }};
 }
 
 }  // namespace duo::app

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -40,8 +41,26 @@ std::string parameter_help() {
   for (const std::string& matcher : matcher_names())
     if (const auto parameters = matcher_parameters(matcher, "default"))
       for (const ParameterInfo& p : *parameters)
-        text += fmt::format("\n  {} {}..{}{}{}: {} [{}]", p.name, p.min, p.max, p.unit.empty() ? "" : " ", p.unit, p.help, p.value);
+        text += fmt::format("\n  {}: {} {}..{}{}{}: {} [{}]", matcher, p.name, p.min, p.max, p.unit.empty() ? "" : " ", p.unit,
+                            p.help, p.value);
   return text;
+}
+
+std::string preset_help() {
+  std::string text = "The matcher's set of parameters;";
+  for (const std::string& matcher : matcher_names())
+    text += fmt::format(" {}: {};", matcher, fmt::join(matcher_presets(matcher), ", "));
+  text.pop_back();
+  return text;
+}
+
+/// The first matcher that has this preset; `otherwise` when none has, which check() then says.
+std::string matcher_with(const std::string& preset, const std::string& otherwise) {
+  for (const std::string& matcher : matcher_names()) {
+    const auto presets = matcher_presets(matcher);
+    if (std::find(presets.begin(), presets.end(), preset) != presets.end()) return matcher;
+  }
+  return otherwise;
 }
 
 }  // namespace
@@ -57,14 +76,19 @@ void EngineOptions::add_to(CLI::App& app) {
   app.add_option("--threads", threads, "Threads; the result does not depend on them")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
-  app.add_option("--matcher", matcher, "Stereo method")->check(CLI::IsMember(matcher_names()))->capture_default_str();
-  app.add_option("--preset", preset, "The matcher's set of parameters: thesis or default")->capture_default_str();
+  const CLI::Option* method = app.add_option("--matcher", matcher, "Stereo method; left out: the one that has the preset")
+                                  ->check(CLI::IsMember(matcher_names()))
+                                  ->capture_default_str();
+  app.add_option("--preset", preset, preset_help())->capture_default_str();
   app.add_option("--set", set, parameter_help())->type_name("NAME=VALUE");
   app.add_option("--denoise", denoise, "Before rectification; auto: gaussian for raw pictures, none for rectified ones")
       ->check(CLI::IsMember(denoise_names))
       ->capture_default_str();
   app.add_flag("--fill", fill, "Fill holes from the background");
-  app.parse_complete_callback([this] { check(); });
+  app.parse_complete_callback([this, method] {
+    if (method->count() == 0) matcher = matcher_with(preset, matcher);
+    check();
+  });
 }
 
 void EngineOptions::check() const {

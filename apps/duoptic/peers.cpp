@@ -49,7 +49,8 @@ constexpr Peer kAccuracy[] = {
      .p2 = 20,
      .padded = true},
 };
-constexpr Peer kSpeed[] = {kBmUsual, sgbm_usual("3WAY usual", Kind::k3Way)};
+constexpr Peer kSpeed[] = {kBmUsual, sgbm_usual("3WAY usual", Kind::k3Way), sgbm_usual("HH4 usual", Kind::kHh4),
+                           sgbm_usual("HH usual", Kind::kHh)};
 
 cv::Ptr<cv::StereoMatcher> make_matcher(const Peer& peer, int disparities) {
   constexpr int kSpeckleRange = 2, kLeftRight = 1;
@@ -65,6 +66,7 @@ cv::Ptr<cv::StereoMatcher> make_matcher(const Peer& peer, int disparities) {
   }
   const int mode = peer.kind == Kind::k3Way  ? cv::StereoSGBM::MODE_SGBM_3WAY
                    : peer.kind == Kind::kHh4 ? cv::StereoSGBM::MODE_HH4
+                   : peer.kind == Kind::kHh  ? cv::StereoSGBM::MODE_HH
                                              : cv::StereoSGBM::MODE_SGBM;
   return cv::StereoSGBM::create(0, disparities, peer.block, peer.p1, peer.p2, kLeftRight, peer.cap, peer.uniqueness,
                                 peer.speckle, kSpeckleRange, mode);

@@ -11,7 +11,7 @@ namespace duo::app {
 
 /// One matcher with one set of parameters.
 struct Peer {
-  enum class Kind { kBm, kSgbm, k3Way, kHh4 };
+  enum class Kind { kBm, kSgbm, k3Way, kHh4, kHh };
   const char* name;
   Kind kind;
   int block, cap, uniqueness, speckle;
@@ -22,7 +22,7 @@ struct Peer {
 
 /// For accuracy: the usual parameters, and those that a grid search found best on tsukuba, venus, teddy and cones.
 std::span<const Peer> accuracy_peers();
-/// For speed: StereoBM and SGBM_3WAY with the usual parameters.
+/// For speed: StereoBM and the semi-global modes 3WAY, HH4 and HH with the usual parameters.
 std::span<const Peer> speed_peers();
 
 /// A peer made ready for one pair, so that run() is the matching call alone.

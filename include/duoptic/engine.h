@@ -31,7 +31,7 @@ struct Wants {
 struct Setup {
   Size size;               // of each raw picture
   std::optional<Rig> rig;  // none: the pair is taken as rectified
-  std::string matcher = "pyramid";
+  std::string matcher = "sgm";
   std::string preset = "default";
   std::vector<std::pair<std::string, double>> parameters;  // override the preset's, by name (see matcher_parameters)
   int max_disparity = 128;  // searches [0, max_disparity) px

@@ -10,7 +10,7 @@ namespace duo {
 
 struct SgmParams {
   int paths = 3;
-  int census_truncation = 14, truncation = 8, p1 = 20, p2 = 45, p2_least = 20, p2_gradient = 20;
+  int census_truncation = 10, truncation = 7, p1 = 20, p2 = 40, p2_least = 22, p2_gradient = 16;
   int tolerance = 1;
   int reach = 1;
   int speckle = 60;

@@ -14,12 +14,12 @@
 namespace duo {
 
 struct SemiGlobalParams {
-  int census_truncation = 14;  // most that the census adds to a pixel's cost, 0 .. 16
-  int truncation = 8;          // most that each of the three channels adds, 0 .. 32
+  int census_truncation = 10;  // most that the census adds to a pixel's cost, 0 .. 16
+  int truncation = 7;          // most that each of the three channels adds, 0 .. 32
   int p1 = 20;                 // penalty of a step of one disparity
-  int p2 = 45;                 // penalty of a larger step where the picture is flat, p1 .. 112
-  int p2_least = 20;           // and the least of it, p1 .. p2
-  int p2_gradient = 20;        // gray step that halves p2
+  int p2 = 40;                 // penalty of a larger step where the picture is flat, p1 .. 112
+  int p2_least = 22;           // and the least of it, p1 .. p2
+  int p2_gradient = 16;        // gray step that halves p2
   bool diagonals = false;      // paths along diagonals, too
   bool upward = false;         // paths from the row below, too
 

@@ -7,7 +7,6 @@
 
 #include <bit>
 #include <cstring>
-#include <thread>
 
 #include "core/check.h"
 #include "stages/semi_global/semi_global.h"
@@ -18,107 +17,12 @@
 // After foreach_target.h, as Highway asks.
 #include <hwy/highway.h>
 
+#include "stages/semi_global/semi_global-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace duo::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::CappedTag<std::uint8_t, simd::SemiGlobalScratch::kGap>;
-using V = hn::Vec<D>;
-using Scratch = simd::SemiGlobalScratch;
 
-constexpr int kGap = Scratch::kGap;
 constexpr int kBlock = 32;  // pixels between two looks at the row before
-
-HWY_INLINE V set(int value) { return hn::Set(D(), static_cast<std::uint8_t>(value)); }
-
-/// The least of all lanes of two vectors: the first one's in the low byte, the second one's in the next.
-template <class DV>
-HWY_INLINE int least(DV d, hn::Vec<DV> a, hn::Vec<DV> b) {
-  if constexpr (hn::MaxLanes(DV()) > 16) {
-    const hn::Half<DV> half;
-    return least(half, hn::Min(hn::LowerHalf(half, a), hn::UpperHalf(half, a)),
-                 hn::Min(hn::LowerHalf(half, b), hn::UpperHalf(half, b)));
-  } else {
-    const hn::Repartition<std::uint16_t, DV> d16;
-    auto v = hn::Min(hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b));
-    v = hn::Min(v, hn::ShiftRightBytes<8>(d, v));
-    v = hn::Min(v, hn::ShiftRightBytes<4>(d, v));
-    v = hn::Min(v, hn::ShiftRightBytes<2>(d, v));
-    return hn::GetLane(hn::BitCast(d16, v));
-  }
-}
-HWY_INLINE int first_of(int pair) { return pair & 255; }
-HWY_INLINE int second_of(int pair) { return pair >> 8; }
-
-/// What the pixel before on a path left behind.
-struct Before {
-  const std::uint8_t* costs;  // lane 0 of its path costs
-  V least, jump, p1;
-  Before(const std::uint8_t* costs_, int least_, int p2, int p1_)
-      : costs(costs_), least(set(least_)), jump(set(least_ + p2)), p1(set(p1_)) {}
-
-  HWY_INLINE V step(int j, V cost) const {
-    const D d;
-    const auto beside = hn::Min(hn::LoadU(d, costs + j - 1), hn::LoadU(d, costs + j + 1));
-    const auto best = hn::Min(hn::Min(hn::Load(d, costs + j), hn::SaturatedAdd(beside, p1)), jump);
-    return hn::SaturatedAdd(cost, hn::Sub(best, least));
-  }
-};
-
-/// The planes of one row: values of the left view, and where those of the right view's lane 0 are for x = 0. Held by value, as
-/// everything that is only pointed to would be read again after each byte stored.
-struct RowPlanes {
-  const std::uint8_t *census[2], *value[3], *low[3], *high[3], *outside;
-  RowPlanes(const MatchPlanes& planes, int y, int offset) {
-    for (std::size_t i = 0; i < 2; ++i) census[i] = planes.census[i].row(y) + offset;
-    for (std::size_t c = 0; c < 3; ++c) {
-      value[c] = planes.value[c].row(y) + offset;
-      low[c] = planes.low[c].row(y) + offset;
-      high[c] = planes.high[c].row(y) + offset;
-    }
-    outside = planes.outside.empty() ? nullptr : planes.outside.row(y) + offset;
-  }
-};
-
-/// One pixel's side of the cost, broadcast.
-template <bool kMasked>
-struct PixelCost {
-  const RowPlanes& right;
-  int x;
-  V census[2], value[3], low[3], high[3], census_most, most, outside;
-
-  HWY_INLINE PixelCost(const RowPlanes& left, const RowPlanes& right_, const SemiGlobalParams& params, int x_)
-      : right(right_), x(x_) {
-    for (std::size_t i = 0; i < 2; ++i) census[i] = set(left.census[i][x]);
-    for (std::size_t c = 0; c < 3; ++c) {
-      value[c] = set(left.value[c][x]);
-      low[c] = set(left.low[c][x]);
-      high[c] = set(left.high[c][x]);
-    }
-    census_most = set(params.census_truncation);
-    most = set(params.truncation);
-    if (kMasked) outside = set(left.outside[x]);
-  }
-
-  HWY_INLINE V at(int j) const {
-    const D d;
-    const auto load = [&](const std::uint8_t* plane) HWY_ATTR { return hn::LoadU(d, plane + x + j); };
-    auto sum = hn::Min(hn::Add(hn::PopulationCount(hn::Xor(census[0], load(right.census[0]))),
-                               hn::PopulationCount(hn::Xor(census[1], load(right.census[1])))),
-                       census_most);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto v = load(right.value[c]);
-      const auto to_right =
-          hn::Or(hn::SaturatedSub(value[c], load(right.high[c])), hn::SaturatedSub(load(right.low[c]), value[c]));
-      const auto to_left = hn::Or(hn::SaturatedSub(v, high[c]), hn::SaturatedSub(low[c], v));
-      sum = hn::Add(sum, hn::Min(hn::Min(to_right, to_left), most));
-    }
-    if (kMasked) {
-      const auto all = hn::Add(census_most, hn::Add(most, hn::Add(most, most)));
-      sum = hn::Max(sum, hn::And(all, hn::Or(outside, load(right.outside))));
-    }
-    return sum;
-  }
-};
 
 /// What all rows of one sweep share, as one thread sees it. Up: rows are taken from the bottom, and sums go to the volume.
 struct Sweep {
@@ -149,10 +53,16 @@ struct Sweep {
 
   int y_of(int i) const { return up ? h - 1 - i : i; }
 
+  /// Spins for about a microsecond, which is what a row above on a running thread needs; then gives the core away.
   void wait_for(int i, int pixels) const {
-    const std::atomic<int>& done = s.done[static_cast<std::size_t>(i)];
-    for (int spins = 0; done.load(std::memory_order_acquire) < pixels; ++spins)
-      if (spins > 200) std::this_thread::yield();
+    std::atomic<int>& done = s.done[static_cast<std::size_t>(i)];
+    for (int spins = 0, now = done.load(std::memory_order_acquire); now < pixels; now = done.load(std::memory_order_acquire))
+      if (++spins > 1000) done.wait(now, std::memory_order_acquire);
+  }
+  void finished(int i, int pixels) const {
+    std::atomic<int>& done = s.done[static_cast<std::size_t>(i)];
+    done.store(pixels, std::memory_order_release);
+    if (threads > 1) done.notify_all();
   }
 };
 
@@ -356,7 +266,7 @@ void run(const Sweep& sweep) {
         along.pixel(x);
         if (!kUp && last >= 0) back.pixel(sweep.w - 1 - x);
       }
-      sweep.s.done[static_cast<std::size_t>(i)].store(end, std::memory_order_release);
+      sweep.finished(i, end);
     }
     if (!kUp && last >= 0) back.finish();
     last = i;
@@ -389,35 +299,6 @@ namespace duo {
 HWY_EXPORT(sweep);
 
 namespace simd {
-
-SemiGlobalScratch::SemiGlobalScratch(Size size, int max_disparity, const SemiGlobalParams& params, int threads)
-    : lanes(padding(max_disparity)),
-      stride(lanes + kGap),
-      none({lanes + 2 * kGap, 1}),
-      rows(2 * static_cast<std::size_t>(threads)) {
-  const int directions = params.diagonals ? 3 : 1;
-  const auto fill = [](Image<std::uint8_t>& image) {
-    for (int y = 0; y < image.height(); ++y) std::memset(image.row(y), 255, static_cast<std::size_t>(image.width()));
-  };
-  for (int i = 0; i <= threads; ++i) {
-    paths.emplace_back(Size{size.width * stride + 2 * kGap, directions});
-    fill(paths.back());
-    minima.emplace_back(Size{size.width, directions});
-  }
-  for (Row& row : rows) {
-    row.sums = Image<std::uint8_t>({size.width * lanes, 1});
-    row.costs = Image<std::uint8_t>({size.width * lanes, 1});
-    for (Image<std::uint8_t>* path : {&row.along, &row.back}) {
-      *path = Image<std::uint8_t>({lanes + 2 * kGap, 2});
-      fill(*path);
-    }
-    row.totals = Image<std::uint8_t>({lanes + 2 * kGap, 1});
-    row.best = Image<std::uint8_t>({lanes + size.width, 1});
-    row.winner = Image<std::uint8_t>({lanes + size.width, 1});
-  }
-  if (params.upward) upward = Image<std::uint8_t>({size.width * lanes, size.height});
-  done = std::make_unique<std::atomic<int>[]>(static_cast<std::size_t>(size.height));
-}
 
 void semi_global(Pool& pool, const SemiGlobal& in, SemiGlobalScratch& scratch, const SemiGlobalMatch& out) {
   const Size size = in.left.size();

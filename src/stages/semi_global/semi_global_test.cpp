@@ -43,6 +43,7 @@ TEST(SemiGlobal, HandWorked) {
     }
   SemiGlobalParams params;
   params.census_truncation = 0;
+  params.truncation = 8;
   params.p1 = 3;
   params.p2 = params.p2_least = 5;
   Match got(left.size());

@@ -1,0 +1,36 @@
+#include <cstring>
+
+#include "stages/semi_global/semi_global.h"
+
+namespace duo::simd {
+
+SemiGlobalScratch::SemiGlobalScratch(Size size, int max_disparity, const SemiGlobalParams& params, int threads)
+    : lanes(padding(max_disparity)),
+      stride(lanes + kGap),
+      none({lanes + 2 * kGap, 1}),
+      rows(2 * static_cast<std::size_t>(threads)) {
+  const int directions = params.diagonals ? 3 : 1;
+  const auto fill = [](Image<std::uint8_t>& image) {
+    for (int y = 0; y < image.height(); ++y) std::memset(image.row(y), 255, static_cast<std::size_t>(image.width()));
+  };
+  for (int i = 0; i <= threads; ++i) {
+    paths.emplace_back(Size{size.width * stride + 2 * kGap, directions});
+    fill(paths.back());
+    minima.emplace_back(Size{size.width, directions});
+  }
+  for (Row& row : rows) {
+    row.sums = Image<std::uint8_t>({size.width * lanes, 1});
+    row.costs = Image<std::uint8_t>({size.width * lanes, 1});
+    for (Image<std::uint8_t>* path : {&row.along, &row.back}) {
+      *path = Image<std::uint8_t>({lanes + 2 * kGap, 2});
+      fill(*path);
+    }
+    row.totals = Image<std::uint8_t>({lanes + 2 * kGap, 1});
+    row.best = Image<std::uint8_t>({lanes + size.width, 1});
+    row.winner = Image<std::uint8_t>({lanes + size.width, 1});
+  }
+  if (params.upward) upward = Image<std::uint8_t>({size.width * lanes, size.height});
+  done = std::make_unique<std::atomic<int>[]>(static_cast<std::size_t>(size.height));
+}
+
+}  // namespace duo::simd
