@@ -10,6 +10,7 @@
 #include "board_pictures.h"
 #include "command.h"
 #include "duoptic/calibrate.h"
+#include "from_scene.h"
 #include "progress.h"
 
 namespace duo::app {
@@ -27,7 +28,8 @@ constexpr char kFooter[] =
 struct Options {
   std::string left, right, board = "chessboard:9x6", output, left_name = "left", right_name = "right";
   double square_mm = 30, near_m = 0.5;
-  bool json = false, quiet = false;
+  bool json = false, quiet = false, no_board = false;
+  FromSceneOptions from_scene;
 };
 
 constexpr double kDegrees = 180 / std::numbers::pi;
@@ -110,6 +112,15 @@ void print(const Calibration& c, const Calibrator& calibrator, const RigDescript
              1000 * description.step_m[1], 1000 * description.step_m[2]);
 }
 
+Result<Exit> from_scene(const Options& options, const CLI::App& app) {
+  FromSceneOptions all = options.from_scene;
+  all.left = options.left;
+  all.right = options.right;
+  all.output = options.output;
+  all.json = options.json;
+  return run_from_scene(all, app);
+}
+
 Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(const Board board, parse_board(options.board, options.square_mm / 1000));
   DUO_TRY_ASSIGN(BoardPictures pictures, BoardPictures::open(options.left, options.right));
@@ -143,7 +154,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 }  // namespace
 
 Command add_calibrate(CLI::App& app) {
-  CLI::App* sub = app.add_subcommand("calibrate", "A rig from pictures of a board");
+  CLI::App* sub = app.add_subcommand("calibrate", "A rig from pictures of a board, or of any scene");
   const auto options = std::make_shared<Options>();
   sub->add_option("LEFT", options->left, "Video or folder of pictures of the left camera")->required();
   sub->add_option("RIGHT", options->right, "The same of the right camera");
@@ -155,10 +166,13 @@ Command add_calibrate(CLI::App& app) {
       ->capture_default_str();
   sub->add_option("--left-name", options->left_name, "What the rig calls the left camera")->capture_default_str();
   sub->add_option("--right-name", options->right_name, "And the right one")->capture_default_str();
+  sub->add_flag("--from-scene", options->no_board, "No board: the pose from points of any scene, in two pictures or videos")
+      ->excludes("--board");
+  add_from_scene_options(*sub, options->from_scene);
   sub->add_flag("--json", options->json, "Print the result as JSON");
   sub->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
   sub->footer(kFooter);
-  return {sub, [options, sub] { return run(*options, *sub); }};
+  return {sub, [options, sub] { return options->no_board ? from_scene(*options, *sub) : run(*options, *sub); }};
 }
 
 }  // namespace duo::app

@@ -22,9 +22,10 @@ Result<std::optional<Rig>> read_lenses(const FromSceneOptions& options) {
 
 void add_from_scene_options(CLI::App& app, FromSceneOptions& options) {
   app.add_option("--intrinsics", options.intrinsics,
-                 "A rig file of the same cameras, of which only the lenses are used; without it the rig is not metric")
+                 "With --from-scene: a rig file of the same cameras, of which only the lenses are used; without it the rig is "
+                 "not metric")
       ->type_name("RIG");
-  app.add_option("--baseline-m", options.baseline_m, "From lens to lens; without it that of --intrinsics")
+  app.add_option("--baseline-m", options.baseline_m, "With --from-scene: from lens to lens; without it that of --intrinsics")
       ->type_name("M")
       ->check(CLI::Range(0.01, 5.0));
 }

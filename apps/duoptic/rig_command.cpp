@@ -9,7 +9,6 @@
 #include "command.h"
 #include "duoptic/rig_files.h"
 #include "duoptic/rig_health.h"
-#include "from_scene.h"
 #include "rig_report.h"
 
 namespace duo::app {
@@ -28,13 +27,6 @@ constexpr char kRefineFooter[] =
     "it. A good rig is left as it is. Nothing is written when the result would still be useless (exit 4).\n\n"
     "Example:\n"
     "  duoptic rig refine rig.json left.avi right.avi -o refined.json";
-constexpr char kFromSceneFooter[] =
-    "Finds the pose of two cameras in any scene with texture at several distances. With --intrinsics (a rig file of the same\n"
-    "cameras) the rig is metric; without, rows agree and disparities are right, but distances are a guess, and the rig says "
-    "so.\n\n"
-    "Examples:\n"
-    "  duoptic rig from-scene left.avi right.avi --intrinsics lenses.json --baseline-m 0.127 -o rig.json\n"
-    "  duoptic rig from-scene left.avi right.avi -o rough.json";
 constexpr char kImportFooter[] =
     "Reads our JSON, OpenCV's YAML and JSON, Kalibr's camchain (pinhole-radtan), and ROS camera_info: one YAML with both\n"
     "cameras, a folder with left.yaml and right.yaml, or two files.\n\n"
@@ -55,7 +47,6 @@ struct Options {
   std::string rig, left, right, output, format = "opencv";
   int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   bool json = false;
-  FromSceneOptions from_scene;
 };
 
 void print_json(const nlohmann::json& json) {
@@ -114,16 +105,6 @@ Result<Exit> refine(const Options& options, const CLI::App& app) {
   return found.after.cut ? Exit::kCut : Exit::kOk;
 }
 
-Result<Exit> from_scene(const Options& options, const CLI::App& app) {
-  FromSceneOptions all = options.from_scene;
-  all.left = options.left;
-  all.right = options.right;
-  all.output = options.output;
-  all.threads = options.threads;
-  all.json = options.json;
-  return run_from_scene(all, app);
-}
-
 Result<Exit> import_file(const Options& options) {
   DUO_TRY_ASSIGN(const Rig rig, import_rig(options.left, options.right));
   DUO_TRY(save_rig(rig, options.output));
@@ -151,7 +132,7 @@ Result<Exit> export_file(const Options& options, const CLI::App& app) {
 }
 
 struct Subcommands {
-  CLI::App *check, *refine, *from_scene, *import, *export_to;
+  CLI::App *check, *refine, *import, *export_to;
 };
 
 Subcommands add_subcommands(CLI::App& rig, Options& options) {
@@ -181,13 +162,6 @@ Subcommands add_subcommands(CLI::App& rig, Options& options) {
   add_json(*refine);
   refine->footer(kRefineFooter);
 
-  CLI::App* from_scene = rig.add_subcommand("from-scene", "A rig without a board, from any scene");
-  add_pictures(*from_scene, true);
-  add_from_scene_options(*from_scene, options.from_scene);
-  add_output(*from_scene, "Rig file", true);
-  add_json(*from_scene);
-  from_scene->footer(kFromSceneFooter);
-
   CLI::App* import = rig.add_subcommand("import", "Read another program's rig");
   import->add_option("FILE", options.left, "Calibration of both cameras, or of the left one (ROS)")->required();
   import->add_option("RIGHT", options.right, "Calibration of the right camera (ROS)");
@@ -201,20 +175,19 @@ Subcommands add_subcommands(CLI::App& rig, Options& options) {
   add_output(*export_to, "File, or folder for ros", true);
   add_json(*export_to);
   export_to->footer(kExportFooter);
-  return {check, refine, from_scene, import, export_to};
+  return {check, refine, import, export_to};
 }
 
 }  // namespace
 
 Command add_rig(CLI::App& app) {
-  CLI::App* sub = app.add_subcommand("rig", "Check, refine, find, import or export a rig");
+  CLI::App* sub = app.add_subcommand("rig", "Check, refine, import or export a rig file");
   sub->require_subcommand(1);
   const auto options = std::make_shared<Options>();
   const Subcommands subs = add_subcommands(*sub, *options);
   return {sub, [options, sub, subs]() -> Result<Exit> {
             if (subs.check->parsed()) return check(*options, *sub);
             if (subs.refine->parsed()) return refine(*options, *sub);
-            if (subs.from_scene->parsed()) return from_scene(*options, *sub);
             if (subs.import->parsed()) return import_file(*options);
             return export_file(*options, *sub);
           }};

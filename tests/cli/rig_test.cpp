@@ -39,14 +39,16 @@ class RigTool : public testing::Test {
   static void TearDownTestSuite() { folder_.reset(); }
   static fs::path at(const std::string& name) { return *folder_ / name; }
 
-  static Ended run(const std::string& arguments) {
-    const std::string command = "cd '" + at("").string() + "' && '" DUO_TOOL "' rig " + arguments + " >stdout.txt 2>stderr.txt";
+  static Ended run(const std::string& arguments, const std::string& command_name = "rig") {
+    const std::string command =
+        "cd '" + at("").string() + "' && '" DUO_TOOL "' " + command_name + " " + arguments + " >stdout.txt 2>stderr.txt";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::bytes_of(at("stdout.txt")), test::bytes_of(at("stderr.txt"))};
   }
-  static void expect_failure(const std::string& arguments, int exit, const std::string& words) {
+  static void expect_failure(const std::string& arguments, int exit, const std::string& words,
+                             const std::string& command_name = "rig") {
     SCOPED_TRACE(arguments);
-    const Ended ended = run(arguments);
+    const Ended ended = run(arguments, command_name);
     EXPECT_EQ(ended.exit, exit);
     EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
     EXPECT_NE(ended.err.find(words), std::string::npos) << ended.err;
@@ -84,7 +86,8 @@ TEST_F(RigTool, RefinesWhatWasNudged) {
 }
 
 TEST_F(RigTool, FindsARigInAScene) {
-  const Ended metric = run("from-scene left.png right.png --intrinsics nudged.json --baseline-m 0.2 -o found.json");
+  const Ended metric =
+      run("--from-scene left.png right.png --intrinsics nudged.json --baseline-m 0.2 -o found.json", "calibrate");
   EXPECT_EQ(metric.exit, 0) << metric.err;
   const auto found = load_rig(at("found.json"));
   ASSERT_TRUE(found) << found.error().what;
@@ -93,7 +96,7 @@ TEST_F(RigTool, FindsARigInAScene) {
   EXPECT_EQ(found->date.size(), 20u) << found->date;
   EXPECT_EQ(run("check found.json left.png right.png").exit, 0);
 
-  const Ended guess = run("from-scene left.png right.png -o guess.json");
+  const Ended guess = run("--from-scene left.png right.png -o guess.json", "calibrate");
   EXPECT_EQ(guess.exit, 0) << guess.err;
   EXPECT_NE(guess.err.find("not metric"), std::string::npos) << guess.err;
   const auto not_metric = load_rig(at("guess.json"));
@@ -136,10 +139,10 @@ TEST_F(RigTool, SaysInOneLineWhatIsWrong) {
   expect_failure("check rig.json left.png", kInput, "240x360");
   expect_failure("refine rig.json right.png left.png -o out.json", kInput, "left and right are swapped");
   expect_failure("refine rig.json left.png rig.json -o out.json", kInput, "rig.json");
-  expect_failure("from-scene right.png left.png --intrinsics rig.json -o out.json", kInput, "left and right are swapped");
-  expect_failure("from-scene left.png left.png --intrinsics rig.json -o out.json", kInput, "the same picture");
-  expect_failure("from-scene left.png right.png --baseline-m 127 -o out.json", kUsage, "baseline-m");
-  expect_failure("from-scene left.png right.png --intrinsics guess.json -o out.json", kInput, "guess");
+  expect_failure("--from-scene right.png left.png --intrinsics rig.json -o out.json", kInput, "swapped", "calibrate");
+  expect_failure("--from-scene left.png left.png --intrinsics rig.json -o out.json", kInput, "the same picture", "calibrate");
+  expect_failure("--from-scene left.png right.png --baseline-m 127 -o out.json", kUsage, "baseline-m", "calibrate");
+  expect_failure("--from-scene left.png right.png --intrinsics guess.json -o out.json", kInput, "guess", "calibrate");
   expect_failure("refine rig.json", kUsage, "LEFT");
   expect_failure("", kUsage, "subcommand");
 }
