@@ -19,7 +19,7 @@ namespace {
 constexpr char kFooter[] =
     "LEFT and RIGHT are two videos, or two folders of pictures (or one, with left and right in their names) that pair by "
     "their\n"
-    "numbers. Print the board with duoptic board, glue it to something flat, measure a square, and show it whole to both\n"
+    "numbers. Print a board, glue it to something flat, measure a square, and show it whole to both\n"
     "cameras 15 times or more: near and far, in all corners, tilted 20 to 40 degrees every way, still each time.\n\n"
     "Examples:\n"
     "  duoptic calibrate left.avi right.avi --board chessboard:9x6 --square-mm 30 -o rig.json\n"

@@ -1,8 +1,7 @@
-// Calibration boards: chessboards and ChArUco boards, as they are named, printed and measured.
+// Calibration boards: chessboards and ChArUco boards, as they are named and measured.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -40,11 +39,5 @@ struct Board {
 /// Errors  another text; fewer than 3x3 or more than 50x50 squares; more markers than the dictionary has; a square outside
 /// 1 mm .. 1 m
 Result<Board> parse_board(std::string_view text, double square_m);
-
-/// Writes the board at true scale, with its size and a ruler to check the print: .pdf, .svg, or .png of 300 dots an inch. The
-/// page is the smallest of A4 .. A0 on which it fits.
-///
-/// Errors  another ending; a board larger than A0; those of every written file
-Result<void> write_board(const Board& board, const std::filesystem::path& path);
 
 }  // namespace duo

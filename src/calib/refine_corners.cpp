@@ -8,10 +8,11 @@
 namespace duo {
 namespace {
 
-constexpr double kBlur_px = 1;    // pixels err alone, edges do not
-constexpr double kStep_px = 0.7;  // of the resampled patch
-constexpr double kReach = 0.75;   // along the edges, of a square; the next corner is at 1
-constexpr double kMaxMove = 0.3;  // of a square, from where the corner was found
+constexpr double kBlur_px = 1;        // pixels err alone, edges do not
+constexpr double kStep_px = 0.7;      // of the resampled patch
+constexpr double kReach = 0.75;       // along the edges, of a square; the next corner is at 1
+constexpr double kOuterReach = 0.35;  // outwards from the outermost corners: many boards have their outer squares cut
+constexpr double kMaxMove = 0.3;      // of a square, from where the corner was found
 
 /// Map from the board, in squares around the corner, to the picture, from the corner's neighbours; empty when they do not span
 /// it. The nearest ones when there are enough: a lens bends what lies further off.
@@ -30,8 +31,18 @@ cv::Mat local_map(const Board& board, const FoundBoard& found, const BoardCorner
   return {};
 }
 
+/// What around a corner is sure to look like a chessboard, in squares; as far to one side as to the other, because noise pulls
+/// towards the middle of what is looked at.
+cv::Rect2d sure_part(const Board& board, int id) {
+  const int x = id % board.inner_columns(), y = id / board.inner_columns();
+  const double across = x == 0 || x == board.inner_columns() - 1 ? kOuterReach : kReach;
+  const double down = y == 0 || y == board.inner_rows() - 1 ? kOuterReach : kReach;
+  return {-across, -down, 2 * across, 2 * down};
+}
+
 /// The point that the gradients beside both edges are orthogonal to, in pixels from the patch's centre.
-std::optional<cv::Point2d> crossing(const cv::Mat& patch, cv::Point2d start, double pixels_a_square, double strip) {
+std::optional<cv::Point2d> crossing(const cv::Mat& patch, cv::Point2d start, cv::Rect2d part, double pixels_a_square,
+                                    double strip) {
   const int half = patch.cols / 2;
   cv::Point2d at = start;
   for (int round = 0; round < 4; ++round) {
@@ -39,7 +50,7 @@ std::optional<cv::Point2d> crossing(const cv::Mat& patch, cv::Point2d start, dou
     for (int y = 1; y < patch.rows - 1; ++y)
       for (int x = 1; x < patch.cols - 1; ++x) {
         const double u = (x - half - at.x) / pixels_a_square, v = (y - half - at.y) / pixels_a_square;
-        if (std::min(std::abs(u), std::abs(v)) > strip) continue;
+        if (std::min(std::abs(u), std::abs(v)) > strip || !part.contains({u, v})) continue;
         const double gx = patch.at<float>(y, x + 1) - patch.at<float>(y, x - 1);
         const double gy = patch.at<float>(y + 1, x) - patch.at<float>(y - 1, x);
         const double px = x - half, py = y - half;
@@ -80,7 +91,7 @@ void refine_corners(const cv::Mat& gray, const Board& board, FoundBoard& found) 
       const double strip = std::min(0.6 * margin, 4 / found.spacing_px);
       std::vector<cv::Point2d> from{{corner.x_px, corner.y_px}}, to;
       cv::perspectiveTransform(from, to, picture_from_patch.inv());
-      const auto at = crossing(patch, to[0] - cv::Point2d(half, half), pixels_a_square, strip);
+      const auto at = crossing(patch, to[0] - cv::Point2d(half, half), sure_part(board, corner.id), pixels_a_square, strip);
       if (!at) continue;
       from[0] = *at + cv::Point2d(half, half);
       cv::perspectiveTransform(from, to, picture_from_patch);
