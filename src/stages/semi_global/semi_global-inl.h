@@ -14,7 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace duo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::CappedTag<std::uint8_t, simd::SemiGlobalScratch::kGap>;
+// Not wider: of the loads one lane beside, every one of a wider vector would straddle a cache line.
+using D = hn::CappedTag<std::uint8_t, 32>;
 using V = hn::Vec<D>;
 using Scratch = simd::SemiGlobalScratch;
 
