@@ -1,0 +1,27 @@
+// match_frames MATCHER FRAMES: one thread matches the synthetic room so many times. Run under callgrind by count_instructions.sh.
+#include <cstdio>
+#include <cstdlib>
+
+#include "duoptic/engine.h"
+#include "duoptic/synthetic.h"
+
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  duo::SyntheticSetup room;
+  room.size = {160, 120};
+  room.ideal = true;
+  const duo::SyntheticPair scene = duo::render_synthetic(room, 1);
+  auto engine = duo::make_engine("simd", 1);
+  duo::Setup setup;
+  setup.size = room.size;
+  setup.matcher = argv[1];
+  setup.max_disparity = 64;
+  setup.fill = true;
+  if (!engine || !(*engine)->prepare(setup)) return 1;
+  unsigned sum = 0;
+  for (int i = std::atoi(argv[2]); i > 0; --i) {
+    (*engine)->submit(scene.pair);
+    sum += (*engine)->collect().disparity.d_q4.at(60, 80);
+  }
+  std::printf("%u\n", sum);
+}
