@@ -3,7 +3,10 @@
 
 #include "duoptic/engine.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "duoptic/synthetic.h"
 #include "tests/agree.h"
@@ -127,6 +130,39 @@ TEST(Engine, MeetsTheTruthOfTheSyntheticRoom) {
   EXPECT_GT(thesis.bad, pyramid.bad) << "the pyramid's default preset is its better one";
   const auto wrong = [](const Score& s) { return s.bad - (1 - s.covered); };  // holes left out
   EXPECT_GT(wrong(pyramid), wrong(sgm)) << "what the default matcher says is the more true";
+}
+
+// The surer the pixels, the smaller their error: over ten groups of equal size, from doubtful to sure, in a room with webcam
+// noise.
+TEST(Engine, ConfidencePredictsError) {
+  SyntheticSetup synthetic;
+  synthetic.ideal = true;
+  const SyntheticPair scene = render_synthetic(synthetic, 2);
+  duo::Setup setup;
+  setup.size = synthetic.size;
+  setup.max_disparity = 96;
+  setup.wants.confidence = true;
+  const auto engine = prepared("simd", 2, setup);
+  const Frame& frame = run(*engine, scene.pair);
+  std::vector<std::pair<int, double>> pixels;
+  for (int y = 0; y < setup.size.height; ++y)
+    for (int x = 0; x < setup.size.width; ++x) {
+      const std::uint16_t d = frame.disparity.d_q4.at(y, x);
+      EXPECT_EQ(frame.confidence.at(y, x) == 0, d == Disparity::kNone);
+      if (d != Disparity::kNone && scene.disparity_px.at(y, x) > 0)
+        pixels.emplace_back(frame.confidence.at(y, x), std::abs(d / 16.0 - scene.disparity_px.at(y, x)) > 1.0);
+    }
+  std::stable_sort(pixels.begin(), pixels.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  double before = 1;
+  for (std::size_t group = 0; group < 10; ++group) {
+    double bad = 0;
+    for (std::size_t i = group * pixels.size() / 10; i < (group + 1) * pixels.size() / 10; ++i) bad += pixels[i].second;
+    bad /= static_cast<double>(pixels.size()) / 10;
+    EXPECT_LE(bad, before) << "group " << group;
+    before = bad;
+  }
+  setup.matcher = "pyramid";
+  EXPECT_FALSE((*make_engine("simd", 1))->prepare(setup)) << "it has none";
 }
 
 // Metres, not only pixels: the raw pair through its rig gives the depth that the renderer knows at the same raw pixel.

@@ -28,7 +28,7 @@ struct Options {
   std::string left, right, rig, folder = "duoptic_out";
   int max_disparity = 128;
   std::int64_t every = 1;
-  bool json = false, quiet = false;
+  bool confidence = false, json = false, quiet = false;
   EngineOptions engine;
 };
 
@@ -104,6 +104,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
     DUO_TRY_ASSIGN(setup.rig, load_rig(options.rig));
     setup.wants = {.color = true, .depth = true};
   }
+  setup.wants.confidence = options.confidence;
   DUO_TRY_ASSIGN(const auto engine, make_engine(options.engine.engine, options.engine.threads));
   DUO_TRY(engine->prepare(setup));
   DUO_TRY_ASSIGN(const Summary summary, process(*pairs, *engine, options, app));
@@ -131,6 +132,7 @@ Command add_depth(CLI::App& app) {
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
       ->capture_default_str();
   options->engine.add_to(*sub);
+  sub->add_flag("--confidence", options->confidence, "Write confidence.png, too: 1 doubtful .. 255 sure, 0 = unknown (matcher sgm)");
   sub->add_flag("--json", options->json, "Print the summary as JSON");
   sub->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
   sub->footer(kFooter);

@@ -8,6 +8,7 @@ Result<void> write_frame(const Frame& frame, const std::optional<Rectified>& rec
   const View<const std::uint16_t> d_q4 = frame.disparity.d_q4;
   DUO_TRY(write_pfm(d_q4, out / "disparity.pfm"));
   DUO_TRY(write_png(draw_disparity(d_q4, rectified ? &*rectified : nullptr), out / "disparity.png"));
+  if (!frame.confidence.empty()) DUO_TRY(write_png(frame.confidence, out / "confidence.png"));
   if (!rectified) return {};
   DUO_TRY(write_png(frame.depth_mm, out / "depth.png"));
   return write_ply(d_q4, frame.color, *rectified, out / "cloud.ply");

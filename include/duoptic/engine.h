@@ -15,7 +15,7 @@
 namespace duo {
 
 enum class Denoise : std::uint8_t {
-  kAuto,      // kGaussian for raw pictures (with a rig), kNone for pairs that come rectified
+  kAuto,  // kGaussian for raw pictures (with a rig), kNone for pairs that come rectified
   kNone,
   kMedian,    // median 3x3
   kGaussian,  // 5x5 binomial
@@ -24,8 +24,9 @@ enum class Denoise : std::uint8_t {
 
 /// Which full maps the frame shall hold besides disparity.
 struct Wants {
-  bool color = false;  // the rectified left picture in colour
-  bool depth = false;  // depth_mm; needs a rig
+  bool color = false;       // the rectified left picture in colour
+  bool depth = false;       // depth_mm; needs a rig
+  bool confidence = false;  // how sure each disparity is; of the matcher sgm alone
 };
 
 struct Setup {
@@ -34,8 +35,8 @@ struct Setup {
   std::string matcher = "sgm";
   std::string preset = "default";
   std::vector<std::pair<std::string, double>> parameters;  // override the preset's, by name (see matcher_parameters)
-  int max_disparity = 128;  // searches [0, max_disparity) px
-  bool fill = false;        // fill holes from the background
+  int max_disparity = 128;                                 // searches [0, max_disparity) px
+  bool fill = false;                                       // fill holes from the background
   Denoise denoise = Denoise::kAuto;
   Wants wants;
   bool time_stages = false;

@@ -51,12 +51,13 @@ struct StageTime {
 struct Frame {
   std::uint64_t sequence = 0;
   TimeNs t_ns = 0;
-  Image<std::uint8_t> left, right;            // rectified, gray, denoised: what the matcher saw
+  Image<std::uint8_t> left, right;                // rectified, gray, denoised: what the matcher saw
   Image<std::uint8_t> left_inside, right_inside;  // 255 where the raw picture covers the pixel, 0 outside; empty = all inside
-  Image<Rgb8> color;                          // rectified left picture (want: color)
+  Image<Rgb8> color;                              // rectified left picture (want: color)
   Disparity disparity;
-  Image<std::uint16_t> depth_mm;              // z in the rig frame, 0 = none (want: depth; needs a rig)
-  std::array<StageTime, 24> stages{};         // when asked for; ends at the first with wall_ns 0
+  Image<std::uint8_t> confidence;      // 1 (doubtful) .. 255 (sure) where measured, else 0 (want: confidence)
+  Image<std::uint16_t> depth_mm;       // z in the rig frame, 0 = none (want: depth; needs a rig)
+  std::array<StageTime, 24> stages{};  // when asked for; ends at the first with wall_ns 0
 };
 
 }  // namespace duo

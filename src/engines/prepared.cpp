@@ -40,6 +40,10 @@ Result<Prepared> prepare_setup(const Setup& setup) {
     return bad(
         "prepare the engine: depth in metres needs a rig (focal length and baseline); give one, or take disparity alone");
   DUO_TRY_ASSIGN(out.matcher, matcher_params(setup));
+  if (setup.wants.confidence && !std::holds_alternative<SgmParams>(out.matcher))
+    return bad(fmt::format(
+        "prepare the engine: matcher {} does not say how sure it is; choose matcher sgm, or do not ask for confidence",
+        setup.matcher));
 
   const Denoise denoise = setup.denoise != Denoise::kAuto ? setup.denoise : (setup.rig ? kRawDenoise : Denoise::kNone);
   out.median = denoise == Denoise::kMedian || denoise == Denoise::kBoth;
@@ -77,6 +81,7 @@ Frame make_frame(const Prepared& prepared) {
     frame.right_inside = Image<std::uint8_t>(prepared.size);
   }
   if (prepared.setup.wants.color) frame.color = Image<Rgb8>(prepared.size);
+  if (prepared.setup.wants.confidence) frame.confidence = Image<std::uint8_t>(prepared.size);
   if (prepared.setup.wants.depth) frame.depth_mm = Image<std::uint16_t>(prepared.size);
   frame.disparity.d_q4 = Image<std::uint16_t>(prepared.size);
   frame.disparity.origin = Image<std::uint8_t>(prepared.size);

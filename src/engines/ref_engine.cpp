@@ -57,7 +57,7 @@ class RefEngine final : public Engine {
     if (auto* pyramid = std::get_if<ref::Pyramid>(&matcher_))
       pyramid->match(gray, disparity.d_q4, timer_);
     else
-      std::get<ref::Sgm>(matcher_).match(gray, disparity.d_q4, timer_);
+      std::get<ref::Sgm>(matcher_).match(gray, {disparity.d_q4, frame_.confidence}, timer_);
     ref::mark_measured(disparity.d_q4, disparity.origin);
     if (setup.fill) fill(disparity);
     timer_.stage("fill");

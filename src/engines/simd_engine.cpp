@@ -61,7 +61,7 @@ class SimdEngine final : public Engine {
     if (auto* pyramid = std::get_if<simd::Pyramid>(&matcher_))
       pyramid->match(gray, disparity.d_q4, timer_);
     else
-      std::get<simd::Sgm>(matcher_).match(gray, disparity.d_q4, timer_);
+      std::get<simd::Sgm>(matcher_).match(gray, {disparity.d_q4, frame_.confidence}, timer_);
     simd::mark_measured(pool_, disparity.d_q4, disparity.origin);
     if (setup.fill) fill(disparity);
     timer_.stage("fill");

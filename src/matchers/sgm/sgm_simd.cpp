@@ -17,24 +17,25 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
       speckle_scratch_(setup.size),
       smooth_scratch_(setup.size) {}
 
-void Sgm::match(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer) {
+void Sgm::match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer) {
   simd::balance(pool_, pair, maps_.balanced);
   timer.stage("balance");
   simd::match_planes(pool_, pair.left, pair.left_inside, left_);
   simd::match_planes(pool_, maps_.balanced, pair.right_inside, right_);
   timer.stage("match_planes");
   const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, params_.semi_global()};
-  simd::semi_global(pool_, in, scratch_, {maps_.left_winner, maps_.right_winner, maps_.fine});
+  simd::semi_global(pool_, in, scratch_, {maps_.left_winner, maps_.right_winner, maps_.fine, out.confidence});
   timer.stage("semi_global");
   // The weighted median writes to another image than it reads: the check starts in the one from which it ends in d_q4.
-  const View<std::uint16_t> checked = params_.smooth != 0 ? maps_.checked.view() : d_q4;
+  const View<std::uint16_t> checked = params_.smooth != 0 ? maps_.checked.view() : out.d_q4;
   simd::check_left_right(
       pool_, {maps_.left_winner, maps_.right_winner, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach},
       maps_.fine, checked);
   timer.stage("check_left_right");
   simd::remove_speckle(pool_, checked, params_.speckle_step_q4, params_.speckle, speckle_scratch_);
   timer.stage("speckle");
-  if (params_.smooth != 0) simd::weighted_median(pool_, {checked, pair.left}, smooth_scratch_, d_q4);
+  if (params_.smooth != 0) simd::weighted_median(pool_, {checked, pair.left}, smooth_scratch_, out.d_q4);
+  if (!out.confidence.empty()) keep_confidence(out.d_q4, out.confidence);
   timer.stage("weighted_median");
 }
 

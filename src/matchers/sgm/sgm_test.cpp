@@ -34,14 +34,17 @@ void expect_engines_agree(Size size, int max_disparity, int paths, bool masked) 
   const MatchSetup setup{size, max_disparity, masked};
   StageTimer timer;
   Image<std::uint16_t> want(size);
-  ref::Sgm(params, setup).match(pair, want, timer);
+  Image<std::uint8_t> sure(size);
+  ref::Sgm(params, setup).match(pair, {want, sure}, timer);
   test::each_target([&](const std::string& target) {
     for (const int threads : {1, 2, 3, 5}) {
       Pool pool(threads);
       Image<std::uint16_t> got(size);
       simd::Sgm matcher(pool, params, setup);
       for (int frame = 0; frame < 2; ++frame) {  // a second frame must not see anything of the first
-        matcher.match(pair, got, timer);
+        Image<std::uint8_t> got_sure(size);
+        matcher.match(pair, {got, got_sure}, timer);
+        test::expect_same<std::uint8_t>(sure, got_sure, "sgm confidence " + target);
         test::expect_same<std::uint16_t>(want, got, "sgm simd " + target + " threads " + std::to_string(threads));
       }
     }
@@ -65,7 +68,7 @@ TEST(Sgm, FindsWallAndBoxInADarkerPicture) {
   Image<std::uint16_t> d_q4(size);
   StageTimer timer;
   Pool pool(1);
-  simd::Sgm(pool, *sgm_params("default", {}), {size, 32, false}).match({scene.left, scene.right}, d_q4, timer);
+  simd::Sgm(pool, *sgm_params("default", {}), {size, 32, false}).match({scene.left, scene.right}, {d_q4}, timer);
   int right = 0, wrong = 0;
   for (int y = 0; y < size.height; ++y)
     for (int x = 20; x < size.width - 8; ++x) {
@@ -112,7 +115,7 @@ TEST(Sgm, SubPixelIsNotDrawnToWholePixels) {
   Image<std::uint16_t> d_q4(size);
   StageTimer timer;
   Pool pool(1);
-  simd::Sgm(pool, *sgm_params("default", {}), {size, 32, false}).match({left, right}, d_q4, timer);
+  simd::Sgm(pool, *sgm_params("default", {}), {size, 32, false}).match({left, right}, {d_q4}, timer);
   int histogram[16] = {}, count = 0;
   double error = 0;
   for (int y = 0; y < size.height; ++y)
