@@ -7,6 +7,7 @@ target_sources(duoptic PRIVATE ${dir}/align_match.cpp ${dir}/opencv_rectified.cp
 target_sources(duoptic PRIVATE ${dir}/board.cpp ${dir}/bundle.cpp ${dir}/calibrate.cpp ${dir}/describe.cpp
   ${dir}/find_board.cpp ${dir}/find_markers.cpp ${dir}/judge_bundle.cpp ${dir}/refine_corners.cpp ${dir}/start_bundle.cpp)
 duoptic_test(calib/align_match ${dir}/align_match_test.cpp)
+duoptic_test(calib/calibrate ${dir}/calibrate_test.cpp)
 duoptic_test(calib/clips ${dir}/clips_test.cpp)
 duoptic_test(calib/rectification ${dir}/rectification_test.cpp)
 duoptic_test(calib/rig ${dir}/rig_test.cpp)

@@ -49,7 +49,8 @@ FoundBoard corners_between(const std::vector<Marker>& markers, const Board& boar
     }
     std::sort(near.begin(), near.end());
     if (near.size() > 4) near.resize(4);
-    if (near.empty() || near[0].first > 1) continue;  // no marker touches the corner
+    // Both markers that touch the corner: with one alone it may be hidden itself.
+    if (near.size() < 2 || near[1].first > 1) continue;
     std::vector<cv::Point2f> on_board, in_picture;
     for (const auto& [distance, marker] : near) {
       const cv::Point2d place = marker_place(board, marker->id);
@@ -86,20 +87,24 @@ FoundBoard find_board(const cv::Mat& gray, const Board& board) {
 }
 
 double edge_spread_px(const cv::Mat& gray, const Board& board, const FoundBoard& found) {
+  // On a white square the profile ends before the marker.
+  const double on_black = 0.4, on_white = board.kind == Board::Kind::kCharuco ? 0.4 * (1 - board.marker_share) : on_black;
   std::vector<double> spreads;
   for (std::size_t i = 1; i < found.corners.size(); ++i) {
     const BoardCorner &a = found.corners[i - 1], &b = found.corners[i];
     if (b.id != a.id + 1 || b.id % board.inner_columns() == 0) continue;
     const cv::Point2d along(b.x_px - a.x_px, b.y_px - a.y_px), middle = {(a.x_px + b.x_px) / 2, (a.y_px + b.y_px) / 2};
-    const double length = cv::norm(along), reach = 0.4 * length;
+    const double length = cv::norm(along);
+    const bool black_below = (a.id % board.inner_columns() + a.id / board.inner_columns()) % 2 == 0;
+    const double from_px = -length * (black_below ? on_white : on_black), to_px = length * (black_below ? on_black : on_white);
     const cv::Point2d across(-along.y / length, along.x / length);
     cv::Mat profile;
     constexpr int kSamples = 65, kMean = 9;
     cv::Mat map_x(kMean, kSamples, CV_32F), map_y(kMean, kSamples, CV_32F);
     for (int v = 0; v < kMean; ++v)
       for (int u = 0; u < kSamples; ++u) {
-        const cv::Point2d p =
-            middle + (reach * (2.0 * u / (kSamples - 1) - 1)) * across + (0.5 * (v + 0.5 - kMean / 2.0) / kMean) * along;
+        const cv::Point2d p = middle + (from_px + (to_px - from_px) * u / (kSamples - 1)) * across +
+                              (0.5 * (v + 0.5 - kMean / 2.0) / kMean) * along;
         map_x.at<float>(v, u) = static_cast<float>(p.x);
         map_y.at<float>(v, u) = static_cast<float>(p.y);
       }
@@ -113,7 +118,7 @@ double edge_spread_px(const cv::Mat& gray, const Board& board, const FoundBoard&
       const double value = (profile.at<float>(u) - low) / std::max(1.0, high - low);
       between += value > 0.25 && value < 0.75;
     }
-    spreads.push_back(2 * reach * between / (kSamples - 1));
+    spreads.push_back((to_px - from_px) * between / (kSamples - 1));
   }
   if (spreads.empty()) return 0;
   std::nth_element(spreads.begin(), spreads.begin() + spreads.size() / 2, spreads.end());
