@@ -52,12 +52,12 @@ struct Rig {
   Camera left, right;
   Rigid3 right_from_left;          // p_in_right = right_from_left * p_in_left
   double reprojection_rms_px = 0;  // how well the calibration fitted, both cameras together; 0 = unknown
-  RigErrors errors;
-  std::optional<RigUncertainty> uncertainty;
-  bool metric = true;                 // false: the length of the baseline is a guess, and so is every distance
-  double time_offset_s = 0;           // a right picture was taken this much later than the left one of its pair
-  std::string left_name, right_name;  // of the cameras, as their user knows them; may be empty
-  std::string date;                   // of the calibration, ISO 8601 in UTC, like 2026-03-01T12:00:00Z; may be empty
+  RigErrors errors = {};
+  std::optional<RigUncertainty> uncertainty = {};
+  bool metric = true;                           // false: the length of the baseline is a guess, and so is every distance
+  double time_offset_s = 0;                     // a right picture was taken this much later than the left one of its pair
+  std::string left_name = {}, right_name = {};  // of the cameras, as their user knows them; may be empty
+  std::string date = {};                        // of the calibration, ISO 8601 in UTC, like 2026-03-01T12:00:00Z; may be empty
   double baseline_m() const { return norm(right_from_left.t_m); }
 };
 
