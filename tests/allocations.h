@@ -26,6 +26,11 @@ inline void* counted(std::size_t bytes, std::size_t align) {
 [[gnu::noinline]] void* operator new[](std::size_t bytes, std::align_val_t align) {
   return duo::test::counted(bytes, static_cast<std::size_t>(align));
 }
+// std::stable_sort asks this way.
+[[gnu::noinline]] void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  duo::test::allocations.fetch_add(1, std::memory_order_relaxed);
+  return std::malloc(bytes);
+}
 [[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete[](void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
