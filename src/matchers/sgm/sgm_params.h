@@ -10,7 +10,10 @@ namespace duo {
 
 struct SgmParams {
   int paths = 3;
-  int census_truncation = 10, truncation = 7, p1 = 20, p2 = 40, p2_least = 22, p2_gradient = 16;
+  // The stage's defaults are this matcher's.
+  int census_truncation = SemiGlobalParams{}.census_truncation, truncation = SemiGlobalParams{}.truncation;
+  int p1 = SemiGlobalParams{}.p1, p2 = SemiGlobalParams{}.p2, p2_least = SemiGlobalParams{}.p2_least;
+  int p2_gradient = SemiGlobalParams{}.p2_gradient;
   int tolerance = 1;
   int reach = 1;
   int speckle = 60;

@@ -27,11 +27,9 @@ struct Match {
   SemiGlobalMatch out() { return {left, right, fine, margin}; }
 };
 
-// One row, only gray counts: census and gradients are switched off by a truncation of 0 and by flat planes. Left 10 50 50,
-// right 50 50 50 and two disparities. C(x, d): x = 0 differs from both by 40, so 8; x = 1, 2 fit both: 0. Paths and sums by
-// hand: from the left L: (8 8) (0 0) (0 0); from the right the same; down: C. S = (24 24) (0 0) (0 0): d = 0 everywhere. With
-// right 50 10 50 the fits are x = 0: none at d = 0 (clamped d = 1 neither); x = 1: d = 0 costs 8, d = 1 costs 0; x = 2: d = 0
-// costs 0, d = 1 costs 8.
+// One row, two disparities, and only gray counts: the census is cut at 0, gradients are flat, intervals are the values alone.
+// Left is 50 everywhere, right 50 10 50: x = 0 fits both (d = 1 meets the continued edge), x = 1 fits d = 1 alone, x = 2 fits d
+// = 0 alone.
 TEST(SemiGlobal, HandWorked) {
   const auto left = test::image<std::uint8_t>({{50, 50, 50}}), right = test::image<std::uint8_t>({{50, 10, 50}});
   Views views(left, right, {}, 2);
