@@ -3,7 +3,7 @@
 .PHONY: build demo test bench format setup-build setup-test
 
 build: setup-build
-	@test -f build/release/build.ninja || cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DDUO_TESTS=OFF >/dev/null
+	@test -f build/release/build.ninja || cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=OFF >/dev/null
 	@cmake --build build/release --target duoptic_tool
 
 demo: build

@@ -35,6 +35,7 @@ function(duoptic_test name source)
   add_executable(${target} ${source})
   target_link_libraries(${target} PRIVATE duoptic_test_main)
   target_precompile_headers(${target} REUSE_FROM duoptic_test_main)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)  # one file
   add_test(NAME ${name} COMMAND ${target})
   set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600)
 endfunction()

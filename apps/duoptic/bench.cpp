@@ -12,7 +12,7 @@
 #include "peers.h"
 #include "timing.h"
 
-namespace duo::app {
+namespace duo::app::bench {
 namespace {
 
 constexpr char kFooter[] =
@@ -201,7 +201,7 @@ Result<Exit> run(const Options& options) {
 
 }  // namespace
 
-Command add_bench(CLI::App& app) {
+Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("bench", "Speed of each stage and of whole frames, beside OpenCV");
   const auto options = std::make_shared<Options>();
   sub->add_option("--engine", options->engine, "Which of our engines")
@@ -219,4 +219,4 @@ Command add_bench(CLI::App& app) {
   return {sub, [options] { return run(*options); }};
 }
 
-}  // namespace duo::app
+}  // namespace duo::app::bench

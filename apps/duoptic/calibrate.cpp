@@ -13,7 +13,7 @@
 #include "from_scene.h"
 #include "progress.h"
 
-namespace duo::app {
+namespace duo::app::calibrate {
 namespace {
 
 constexpr char kFooter[] =
@@ -153,7 +153,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 
 }  // namespace
 
-Command add_calibrate(CLI::App& app) {
+Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("calibrate", "A rig from pictures of a board, or of any scene");
   const auto options = std::make_shared<Options>();
   sub->add_option("LEFT", options->left, "Video or folder of pictures of the left camera")->required();
@@ -175,4 +175,4 @@ Command add_calibrate(CLI::App& app) {
   return {sub, [options, sub] { return options->no_board ? from_scene(*options, *sub) : run(*options, *sub); }};
 }
 
-}  // namespace duo::app
+}  // namespace duo::app::calibrate

@@ -29,16 +29,37 @@ struct Command {
   std::function<Result<Exit>()> run;
 };
 
-Command add_depth(CLI::App& app);
-Command add_track(CLI::App& app);
-Command add_eval(CLI::App& app);
-Command add_eval_clip(CLI::App& eval);
-Command add_bench(CLI::App& app);
-Command add_demo(CLI::App& app);
-Command add_synth(CLI::App& app);
-Command add_calibrate(CLI::App& app);
-Command add_rig(CLI::App& app);
-Command add_version(CLI::App& app);
+// One namespace for each subcommand's file.
+namespace depth {
+Command add(CLI::App& app);
+}
+namespace track {
+Command add(CLI::App& app);
+}
+namespace eval {
+Command add(CLI::App& app);
+}
+namespace eval_clip {
+Command add(CLI::App& eval);
+}
+namespace bench {
+Command add(CLI::App& app);
+}
+namespace demo {
+Command add(CLI::App& app);
+}
+namespace synth {
+Command add(CLI::App& app);
+}
+namespace calibrate {
+Command add(CLI::App& app);
+}
+namespace rig {
+Command add(CLI::App& app);
+}
+namespace version {
+Command add(CLI::App& app);
+}
 
 /// The options that say which engine runs with which matcher.
 struct EngineOptions {

@@ -14,7 +14,7 @@
 #include "timing.h"
 #include "truth.h"
 
-namespace duo::app {
+namespace duo::app::demo {
 namespace {
 
 struct Options {
@@ -91,18 +91,18 @@ Result<void> track_person(const Options& options, const CLI::App& app) {
     DUO_TRY(write_clip(setup, clip, options.engine.threads, [&](int done, int) { progress.frame(done); }));
   }
   DUO_TRY_ASSIGN(const ClipTruth truth, load_clip(clip));
-  std::vector<ClipScore> scores;
+  std::vector<eval_clip::ClipScore> scores;
   for (const char* preset : {"default", "thesis"}) {
     ArmOptions arm;
     arm.engine = options.engine;
     arm.tracker_preset = preset;
     const std::string video = (std::filesystem::path(options.folder) / fmt::format("arm_{}.mp4", preset)).string();
-    DUO_TRY_ASSIGN(ClipScore score, track_clip(clip, truth, arm, 0, video));
+    DUO_TRY_ASSIGN(eval_clip::ClipScore score, eval_clip::track_clip(clip, truth, arm, 0, video));
     if (!score.note.empty()) say(app, "warning: " + score.note);
     scores.push_back(std::move(score));
   }
   fmt::print("\nThe arm against its exact joints, mm; the thesis's tracker of 2010 beside ours\n");
-  print(scores);
+  eval_clip::print(scores);
   fmt::print("\nLook at {0}/arm_default.mp4 (joints and bones, depth, arm region, hue), and how {0}/arm_thesis.mp4 loses it.\n",
              options.folder);
   return {};
@@ -136,7 +136,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 
 }  // namespace
 
-Command add_demo(CLI::App& app) {
+Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("demo", "A synthetic room and a person in it: accuracy, speed, pictures and videos");
   const auto options = std::make_shared<Options>();
   sub->add_option("-o,--output", options->folder, "Folder for the pictures")->type_name("DIR")->capture_default_str();
@@ -145,4 +145,4 @@ Command add_demo(CLI::App& app) {
   return {sub, [options, sub] { return run(*options, *sub); }};
 }
 
-}  // namespace duo::app
+}  // namespace duo::app::demo

@@ -10,7 +10,7 @@
 #include "progress.h"
 #include "timing.h"
 
-namespace duo::app {
+namespace duo::app::depth {
 namespace {
 
 namespace fs = std::filesystem;
@@ -115,7 +115,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 
 }  // namespace
 
-Command add_depth(CLI::App& app) {
+Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("depth", "Disparity, depth and points of pictures or videos");
   const auto options = std::make_shared<Options>();
   sub->add_option("LEFT", options->left, "Picture or video of the left camera, or of both side by side")->required();
@@ -139,4 +139,4 @@ Command add_depth(CLI::App& app) {
   return {sub, [options, sub] { return run(*options, *sub); }};
 }
 
-}  // namespace duo::app
+}  // namespace duo::app::depth

@@ -16,7 +16,7 @@
 #include "score.h"
 #include "timing.h"
 
-namespace duo::app {
+namespace duo::app::eval {
 namespace {
 
 namespace fs = std::filesystem;
@@ -286,7 +286,7 @@ Result<Exit> run(const Options& options) {
 
 }  // namespace
 
-Command add_eval(CLI::App& app) {
+Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("eval", "Accuracy on scenes with known truth");
   CLI::App* middlebury = sub->add_subcommand("middlebury", "The Middlebury evaluation, version 2");
   sub->require_subcommand(1);
@@ -300,11 +300,11 @@ Command add_eval(CLI::App& app) {
   middlebury->add_flag("--json", options->json, "Print the scores as JSON");
   middlebury->add_option("-o,--output", options->output, "Folder for pictures of the errors")->type_name("DIR");
   middlebury->footer(kFooter);
-  const Command clip = add_eval_clip(*sub);
+  const Command clip = eval_clip::add(*sub);
   return {sub, [options, clip] {
             if (clip.app->parsed()) return clip.run();
             return options->perturb ? run_perturbed(*options) : run(*options);
           }};
 }
 
-}  // namespace duo::app
+}  // namespace duo::app::eval

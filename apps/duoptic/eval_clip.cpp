@@ -10,7 +10,7 @@
 #include "eval_clip.h"
 #include "timing.h"
 
-namespace duo::app {
+namespace duo::app::eval_clip {
 namespace {
 
 namespace fs = std::filesystem;
@@ -189,7 +189,7 @@ Result<Exit> run(const Options& options) {
 
 }  // namespace
 
-Command add_eval_clip(CLI::App& eval) {
+Command add(CLI::App& eval) {
   CLI::App* sub = eval.add_subcommand("clip", "The tracker on clips with exact joints and depth");
   const auto options = std::make_shared<Options>();
   sub->add_option("DIR", options->folders, "Folder of a clip")->required();
@@ -203,4 +203,4 @@ Command add_eval_clip(CLI::App& eval) {
   return {sub, [options] { return run(*options); }};
 }
 
-}  // namespace duo::app
+}  // namespace duo::app::eval_clip

@@ -8,7 +8,7 @@
 #include "arm_run.h"
 #include "clip_score.h"
 
-namespace duo::app {
+namespace duo::app::eval_clip {
 
 struct ClipScore {
   std::string clip, tracker_preset;
@@ -27,4 +27,4 @@ Result<ClipScore> track_clip(const std::filesystem::path& folder, const ClipTrut
 /// The table of scores, with its heading.
 void print(const std::vector<ClipScore>& scores);
 
-}  // namespace duo::app
+}  // namespace duo::app::eval_clip

@@ -11,7 +11,7 @@
 #include "duoptic/rig_health.h"
 #include "rig_report.h"
 
-namespace duo::app {
+namespace duo::app::rig {
 namespace {
 
 constexpr char kCheckFooter[] =
@@ -180,7 +180,7 @@ Subcommands add_subcommands(CLI::App& rig, Options& options) {
 
 }  // namespace
 
-Command add_rig(CLI::App& app) {
+Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("rig", "Check, refine, import or export a rig file");
   sub->require_subcommand(1);
   const auto options = std::make_shared<Options>();
@@ -193,4 +193,4 @@ Command add_rig(CLI::App& app) {
           }};
 }
 
-}  // namespace duo::app
+}  // namespace duo::app::rig

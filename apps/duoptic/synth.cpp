@@ -9,7 +9,7 @@
 #include "duoptic/synthetic.h"
 #include "progress.h"
 
-namespace duo::app {
+namespace duo::app::synth {
 namespace {
 
 constexpr char kFooter[] =
@@ -58,7 +58,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 
 }  // namespace
 
-Command add_synth(CLI::App& app) {
+Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("synth", "Render a person in a room: two webcams' videos with exact truth");
   const auto options = std::make_shared<Options>();
   sub->add_option("--script", options->clip.script, "What the arm does; tour: one after the other")
@@ -85,4 +85,4 @@ Command add_synth(CLI::App& app) {
   return {sub, [options, sub] { return run(*options, *sub); }};
 }
 
-}  // namespace duo::app
+}  // namespace duo::app::synth

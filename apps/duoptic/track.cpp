@@ -11,7 +11,7 @@
 #include "progress.h"
 #include "timing.h"
 
-namespace duo::app {
+namespace duo::app::track {
 namespace {
 
 constexpr char kFooter[] =
@@ -157,7 +157,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 
 }  // namespace
 
-Command add_track(CLI::App& app) {
+Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("track", "An arm in 3D through two videos, from a click on hand, elbow and shoulder");
   const auto options = std::make_shared<Options>();
   sub->add_option("LEFT", options->left, "Video of the left camera, or of both side by side")->required();
@@ -181,4 +181,4 @@ Command add_track(CLI::App& app) {
   return {sub, [options, sub] { return run(*options, *sub); }};
 }
 
-}  // namespace duo::app
+}  // namespace duo::app::track

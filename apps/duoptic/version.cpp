@@ -9,7 +9,7 @@
 #include "duoptic/devices.h"
 #include "peers.h"
 
-namespace duo::app {
+namespace duo::app::version {
 namespace {
 
 std::vector<std::string> simd_targets() {
@@ -46,7 +46,7 @@ Result<Exit> run(bool json) {
 
 }  // namespace
 
-Command add_version(CLI::App& app) {
+Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("version", "This build and what it finds on this machine");
   const auto json = std::make_shared<bool>(false);
   sub->add_flag("--json", *json, "Print it as JSON");
@@ -54,4 +54,4 @@ Command add_version(CLI::App& app) {
   return {sub, [json] { return run(*json); }};
 }
 
-}  // namespace duo::app
+}  // namespace duo::app::version

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kMinViews = 6, kMaxViews = 40, kMinCorners = 8;
 constexpr double kMinTilt_rad = 10 * std::numbers::pi / 180;
 constexpr double kMaxSpread = 0.12, kMaxSpread_px = 3;  // of a blurred edge: share of a square, and px
-constexpr double kUselessRms_px = 1, kUselessRow_px = 0.75;
+constexpr double kRefusedRms_px = 1, kRefusedRow_px = 0.75;
 constexpr std::size_t kKeptPictures = 3;
 
 Error refused(const std::string& why) { return {ErrorCode::kBadInput, "cannot calibrate: " + why}; }
@@ -284,22 +284,22 @@ Result<Calibration> Calibrator::solve() const {
   Rig& rig = out.rig;
   const RigUncertainty& sigma = *rig.uncertainty;
   DUO_TRY(check_rig(rig, "just calibrated"));
-  if (rig.reprojection_rms_px > kUselessRms_px || rig.errors.row_px > kUselessRow_px)
+  if (rig.reprojection_rms_px > kRefusedRms_px || rig.errors.row_px > kRefusedRow_px)
     return refused(fmt::format(
         "the views do not fit one rig: {:.2f} px reprojection (left {:.2f}, right {:.2f}) and {:.2f} px row "
         "error, {:.1f} and {:.2f} are useless; keep the board flat, board and cameras still, focus fixed",
-        rig.reprojection_rms_px, rig.errors.left_px, rig.errors.right_px, rig.errors.row_px, kUselessRms_px, kUselessRow_px));
+        rig.reprojection_rms_px, rig.errors.left_px, rig.errors.right_px, rig.errors.row_px, kRefusedRms_px, kRefusedRow_px));
   if (sigma.left_focal_px > 0.03 * rig.left.fx_px || sigma.right_focal_px > 0.03 * rig.right.fx_px)
     return refused(
         fmt::format("the focal lengths stay uncertain ({:.0f} and {:.0f} px of {:.0f}); tilt the board more, near and far",
                     sigma.left_focal_px, sigma.right_focal_px, rig.left.fx_px));
   const HeldOut held_out = judge_held_out(used, state_->board, bundle);
   rig.errors.held_out_px = held_out.reprojection_px, rig.errors.held_out_row_px = held_out.row_px;
-  if (held_out.row_px > kUselessRow_px)
+  if (held_out.row_px > kRefusedRow_px)
     return refused(
         fmt::format("rows differ by {:.2f} px on views left out of the calibration, {:.2f} is useless; take more views, "
                     "spread wider",
-                    held_out.row_px, kUselessRow_px));
+                    held_out.row_px, kRefusedRow_px));
   out.held_out_shape_m = held_out.shape_m, out.held_out_z_m = held_out.z_m;
   out.views = state_->views;
   for (BoardView& view : out.views) {

@@ -11,7 +11,7 @@ namespace duo {
 namespace {
 
 constexpr double kFar_m = 2;
-constexpr double kStep_px = 0.25;  // what matching tells apart on common surfaces
+constexpr double kDisparityStep_px = 0.25;  // what matching tells apart on common surfaces
 
 }  // namespace
 
@@ -22,7 +22,7 @@ Result<RigDescription> describe_rig(const Rig& rig, double near_m) {
   out.max_disparity = static_cast<int>(std::ceil(geometry.focal_px * geometry.baseline_m / near_m)) + 1;
   const std::array<double, 3> depths_m = {1, 2, 3};
   for (std::size_t i = 0; i < depths_m.size(); ++i)
-    out.step_m[i] = kStep_px * depths_m[i] * depths_m[i] / (geometry.focal_px * geometry.baseline_m);
+    out.step_m[i] = kDisparityStep_px * depths_m[i] * depths_m[i] / (geometry.focal_px * geometry.baseline_m);
 
   const Lens left(rig.left), right(rig.right);
   constexpr int kSteps = 64;

@@ -12,9 +12,9 @@ constexpr const char* kSchema = "duoptic.rig";
 constexpr int kVersion = 1;
 
 /// Takes values out of a JSON document and keeps the first thing that is wrong.
-class Reader {
+class JsonReader {
  public:
-  explicit Reader(const nlohmann::json& json) : json_(json) {}
+  explicit JsonReader(const nlohmann::json& json) : json_(json) {}
   const std::string& wrong() const { return wrong_; }
 
   bool has(const std::string& key) const { return json_.contains(nlohmann::json::json_pointer("/" + key)); }
@@ -58,7 +58,7 @@ class Reader {
   std::string wrong_;
 };
 
-void read_camera(Reader& reader, const std::string& side, Camera& camera) {
+void read_camera(JsonReader& reader, const std::string& side, Camera& camera) {
   reader.integer(side + "/width", camera.size.width);
   reader.integer(side + "/height", camera.size.height);
   reader.number(side + "/fx_px", camera.fx_px);
@@ -68,7 +68,7 @@ void read_camera(Reader& reader, const std::string& side, Camera& camera) {
   reader.numbers(side + "/distortion", camera.distortion);
 }
 
-void read_errors(Reader& reader, RigErrors& errors) {
+void read_errors(JsonReader& reader, RigErrors& errors) {
   reader.number("errors/left_px", errors.left_px);
   reader.number("errors/right_px", errors.right_px);
   reader.number("errors/row_px", errors.row_px);
@@ -76,7 +76,7 @@ void read_errors(Reader& reader, RigErrors& errors) {
   reader.number("errors/held_out_row_px", errors.held_out_row_px);
 }
 
-void read_uncertainty(Reader& reader, RigUncertainty& sigma) {
+void read_uncertainty(JsonReader& reader, RigUncertainty& sigma) {
   reader.number("uncertainty/left_focal_px", sigma.left_focal_px);
   reader.number("uncertainty/right_focal_px", sigma.right_focal_px);
   reader.number("uncertainty/tilt_rad", sigma.tilt_rad);
@@ -106,7 +106,7 @@ Result<Rig> rig_from_json(const nlohmann::json& json, const std::string& name) {
   if (!json.contains("version") || json["version"] != kVersion)
     return rig_error(name, "only version {} of this format is known; write it with this program's version", kVersion);
   Rig rig;
-  Reader reader(json);
+  JsonReader reader(json);
   read_camera(reader, "left", rig.left);
   read_camera(reader, "right", rig.right);
   std::array<double, 3> t{};

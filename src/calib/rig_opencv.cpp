@@ -65,9 +65,9 @@ Result<Numbers> numbers_from_json(const nlohmann::json& json, const std::string&
 }
 
 /// Finds named lists of the right length and keeps the first thing that is wrong.
-class Reader {
+class OpencvReader {
  public:
-  explicit Reader(const Numbers& numbers) : numbers_(numbers) {}
+  explicit OpencvReader(const Numbers& numbers) : numbers_(numbers) {}
   const std::string& wrong() const { return wrong_; }
 
   /// Empty when the key is missing or has another count than the allowed ones.
@@ -91,13 +91,13 @@ class Reader {
   std::string wrong_;
 };
 
-int whole(Reader& reader, const char* key, double value) {
+int whole(OpencvReader& reader, const char* key, double value) {
   if (!(value == std::floor(value)) || std::abs(value) > 1e6)
     reader.complain(fmt::format("key '{}' is {}, not a size in pixels", key, value));
   return reader.wrong().empty() ? static_cast<int>(value) : 0;
 }
 
-Size read_size(Reader& reader, const Numbers& numbers) {
+Size read_size(OpencvReader& reader, const Numbers& numbers) {
   constexpr const char* kAdvice = "give the size of the calibrated pictures (image_width and image_height, or image_size)";
   if (numbers.contains("image_size")) {
     const auto size = reader.take("image_size", {2}, "it must be [width, height]");
@@ -109,7 +109,7 @@ Size read_size(Reader& reader, const Numbers& numbers) {
   return {whole(reader, "image_width", width[0]), whole(reader, "image_height", height[0])};
 }
 
-Camera read_camera(Reader& reader, const char* matrix_key, const char* distortion_key) {
+Camera read_camera(OpencvReader& reader, const char* matrix_key, const char* distortion_key) {
   Camera camera;
   const auto m = reader.take(matrix_key, {9}, "a 3x3 camera matrix is needed");
   const auto d = reader.take(distortion_key, {4, 5, 8}, "calibrate with a model of 4, 5 or 8 distortion coefficients");
@@ -131,7 +131,7 @@ Result<Rig> rig_from_numbers(const Numbers& numbers, const std::string& name) {
   if (spelling == std::end(kSpellings))
     return rig_error(name, "it has no camera matrices (cameraMatrix1, M1 or camera_matrix_left); give a stereo calibration");
   Rig rig;
-  Reader reader(numbers);
+  OpencvReader reader(numbers);
   rig.left = read_camera(reader, spelling->left_matrix, spelling->left_distortion);
   rig.right = read_camera(reader, spelling->right_matrix, spelling->right_distortion);
   constexpr const char* kPose = "the file must hold R (3x3) and T (3x1, metres) beside the camera matrices";

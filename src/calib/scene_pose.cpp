@@ -141,17 +141,17 @@ double huber_weight(double error_px, double sigma_px) {
 using Weight = double (*)(double error_px, double sigma_px);
 
 /// The normal equations of one round.
-struct Equations {
+struct PoseEquations {
   Eigen::MatrixXd information;
   Eigen::VectorXd pull;
   double sigma_px = 0;  // of the matches' errors
 };
 
-Equations equations_at(const Problem& problem, const SceneFreedom& freedom, Weight weight_of, const ScenePlace& at) {
+PoseEquations equations_at(const Problem& problem, const SceneFreedom& freedom, Weight weight_of, const ScenePlace& at) {
   const auto parts = static_cast<Eigen::Index>(problem.free().size());
   const std::vector<double> errors = problem.errors(at);
   const Eigen::MatrixXd slopes = problem.slopes(at);
-  Equations out{Eigen::MatrixXd::Zero(parts, parts), Eigen::VectorXd::Zero(parts), robust_sigma_px(errors)};
+  PoseEquations out{Eigen::MatrixXd::Zero(parts, parts), Eigen::VectorXd::Zero(parts), robust_sigma_px(errors)};
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const auto slope = slopes.row(static_cast<Eigen::Index>(i));
     const double weight = weight_of(errors[i], out.sigma_px) / (out.sigma_px * out.sigma_px * problem.repeats());
@@ -179,7 +179,7 @@ Result<Solution> solve(const Problem& problem, const SceneFreedom& freedom, Weig
   constexpr int kRounds = 100;
   constexpr double kLongestStep = 0.3, kConverged = 1e-9;
   const auto parts = static_cast<Eigen::Index>(problem.free().size());
-  Equations equations;
+  PoseEquations equations;
   for (int round = 0; round < kRounds; ++round) {
     equations = equations_at(problem, freedom, weight_of, at);
     Eigen::VectorXd step = equations.information.ldlt().solve(equations.pull);

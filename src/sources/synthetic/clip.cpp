@@ -16,14 +16,14 @@ namespace duo {
 
 using namespace synthetic;
 
-namespace {
-
-constexpr double kFramesPerSecond = 30;
-
 // Where rig and person stand.
 struct Staging {
   Rigid3 world_from_rig, world_from_person;
 };
+
+namespace {
+
+constexpr double kFramesPerSecond = 30;
 
 Staging stage(const SyntheticClipSetup& setup, double scale) {
   Random random(setup.seed ^ 0x57a6eU);

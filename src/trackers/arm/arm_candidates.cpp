@@ -9,8 +9,6 @@ namespace {
 
 constexpr int kLongUnseen = 3;  // frames: from then on only a good candidate may take over
 
-double square(double x) { return x * x; }
-
 }  // namespace
 
 /// What stands in front, is not the body's surface and hangs together with the predicted elbow: sleeves have no skin colour.
@@ -88,7 +86,7 @@ std::optional<Arm::Candidate> Arm::candidate(const Grid& grid, const Region& reg
   constexpr double kMostJump = 6, kHandM2 = 0.008, kSize = 1.5, kUngated = 0.5, kLimb = 0.7, kMostlySkin = 0.6,
                    kForePerM = 0.5 / 0.03, kCovered = 4;
   const double prior_m = params_.hand_prior_m + params_.hand_prior_growth_m_s * unseen_s;
-  out.score = out.elbow.score - std::min(kMostJump, 0.5 * square(jump_m / prior_m)) +
+  out.score = out.elbow.score - std::min(kMostJump, 0.5 * std::pow(jump_m / prior_m, 2)) +
               kSize * std::min(1.0, out.hand.area_m2 / kHandM2) - (gated ? 0 : kUngated) -
               (by_skin ? 0 : kLimb + 2 * std::max(0.0, kMostlySkin - skin)) - kForePerM * std::abs(fore_m - lengths_.fore_m) -
               kCovered * covered_beyond(grid, silhouette_.front, elbow, out.hand, params_);

@@ -62,7 +62,7 @@ void BlobFinder::find(Pool& pool, std::span<Blob> blobs, std::array<bool, kMaxTa
   for (std::size_t i = 0; i < blobs.size(); ++i) {
     const int bit = static_cast<int>(i);
     const Window window = targets[i].window;
-    simd::keep_region(pool, {bit, window, Region::Pick::kNearest, pixel_at(blobs[i].at_px)}, eroded_.view(), forest_);
+    simd::keep_region(pool, {bit, window, duo::Region::Pick::kNearest, pixel_at(blobs[i].at_px)}, eroded_.view(), forest_);
     const AreaSums sums =
         simd::sums(pool, {hue_.size(), {window, {}, eroded_.view(), static_cast<std::uint8_t>(1 << bit)}, hue_.view(), {}});
     found[i] = sums.count >= kLeastPixels;
