@@ -11,9 +11,10 @@ namespace duo {
 /// One view. Census: bit k of both bytes tells whether neighbour k is darker than the pixel. Channels (gray, Sobel x, Sobel y):
 /// the value, and the interval that it and the half-way values towards its four neighbours span.
 ///
-/// Shape   all H x W; outside (255 = cannot be compared) may be empty. Each row continues by its edge values for as many
-/// columns
-///         as PlaneImages::pad says on the left, and 64 on the right
+/// Outside: 255 where the pixel cannot be compared, else 0.
+///
+/// Shape   all H x W; each row continues by its edge values for as many columns as PlaneImages::pad says on the left, and 64 on
+///         the right
 struct MatchPlanes {
   static constexpr int kChannels = 3;
   std::array<View<const std::uint8_t>, 2> census;
@@ -32,18 +33,16 @@ struct PlaneImages {
   Image<std::uint8_t> outside;
 
   PlaneImages() = default;
-  PlaneImages(Size size_, int pad_, bool masked) : size(size_), pad(pad_) {
+  PlaneImages(Size size_, int pad_) : size(size_), pad(pad_) {
     const Size padded{pad + size.width + kPadRight, size.height};
     for (auto& plane : census) plane = Image<std::uint8_t>(padded);
     for (auto* planes : {&value, &low, &high})
       for (auto& plane : *planes) plane = Image<std::uint8_t>(padded);
-    if (masked) outside = Image<std::uint8_t>(padded);
+    outside = Image<std::uint8_t>(padded);
   }
 
   MatchPlanes planes() const {
-    const auto inner = [this](const Image<std::uint8_t>& plane) {
-      return plane.empty() ? View<const std::uint8_t>{} : plane.view().crop(0, pad, size);
-    };
+    const auto inner = [this](const Image<std::uint8_t>& plane) { return plane.view().crop(0, pad, size); };
     MatchPlanes out;
     for (std::size_t i = 0; i < census.size(); ++i) out.census[i] = inner(census[i]);
     for (std::size_t i = 0; i < value.size(); ++i)

@@ -7,11 +7,7 @@
 namespace duo::ref {
 
 Sgm::Sgm(const SgmParams& params, const MatchSetup& setup)
-    : params_(params),
-      max_disparity_(setup.max_disparity),
-      maps_(setup.size),
-      left_(setup.size, 0, setup.masked),
-      right_(setup.size, 0, setup.masked) {}
+    : params_(params), max_disparity_(setup.max_disparity), maps_(setup.size), left_(setup.size, 0), right_(setup.size, 0) {}
 
 void Sgm::match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer) {
   ref::balance(pair, maps_.balanced);

@@ -11,8 +11,8 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
       params_(params),
       max_disparity_(setup.max_disparity),
       maps_(setup.size),
-      left_(setup.size, SemiGlobalScratch::padding(setup.max_disparity), setup.masked),
-      right_(setup.size, SemiGlobalScratch::padding(setup.max_disparity), setup.masked),
+      left_(setup.size, SemiGlobalScratch::padding(setup.max_disparity)),
+      right_(setup.size, SemiGlobalScratch::padding(setup.max_disparity)),
       scratch_(setup.size, setup.max_disparity, params.semi_global(), pool.threads()),
       speckle_scratch_(setup.size),
       smooth_scratch_(setup.size) {}

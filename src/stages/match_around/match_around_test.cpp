@@ -6,7 +6,8 @@
 namespace duo {
 namespace {
 
-// The right picture is the left one moved by three pixels; every interior pixel must find 3, at the lowest level and around 2 * 1.
+// The right picture is the left one moved by three pixels; every interior pixel must find 3, at the lowest level and around 2
+// * 1.
 TEST(MatchAround, FindsAShift) {
   std::mt19937 rng(5);
   Image<std::uint8_t> left({40, 20}), right({40, 20});
@@ -56,7 +57,9 @@ TEST(MatchAround, OutsideNeverMatches) {
     for (int x = 10; x < 30; ++x) right_inside.at(y, x) = 0;
   const Image<std::int16_t> coarser = test::constant<std::int16_t>({20, 10}, 0);
   Image<std::int16_t> dst(left.size());
-  ref::match_around({.left = left, .right = left, .left_inside = inside, .right_inside = right_inside, .coarser = coarser, .radius = 12}, dst);
+  ref::match_around(
+      {.left = left, .right = left, .left_inside = inside, .right_inside = right_inside, .coarser = coarser, .radius = 12},
+      dst);
   EXPECT_EQ(dst.at(10, 5), 0);
   EXPECT_NE(dst.at(10, 20), 0);
 }
@@ -70,7 +73,8 @@ TEST(MatchAround, CountsItsComparisons) {
     const Image<std::uint8_t> flat(sizes[level]);
     Image<std::int16_t> dst(sizes[level]);
     const View<const std::int16_t> below = level == 0 ? View<const std::int16_t>() : View<const std::int16_t>(coarser);
-    ref::match_around({.left = flat, .right = flat, .coarser = below, .radius = level == 0 ? 0 : 3 << (level - 1)}, dst, &comparisons);
+    ref::match_around({.left = flat, .right = flat, .coarser = below, .radius = level == 0 ? 0 : 3 << (level - 1)}, dst,
+                      &comparisons);
     coarser = std::move(dst);
   }
   EXPECT_EQ(comparisons, 10 * 8 * 10 + 20 * 16 * 7 + 40 * 32 * 13 + 80 * 64 * 25);
@@ -78,38 +82,40 @@ TEST(MatchAround, CountsItsComparisons) {
 
 TEST(MatchAround, SimdAgrees) {
   std::mt19937 rng(7);
+  std::size_t turn = 0;
   Pool one(1), two(2);
   for (const Size size : test::awkward_sizes())
-    for (const test::Fill how : test::kFills)
-      for (const int radius : {0, 1, 3, 6, 12, 15})  // 0 stands for the lowest level
-        for (const bool masked : {false, true}) {
-          test::Tight<std::uint8_t> left(size), right(size), left_inside(size), right_inside(size);
-          test::fill(left.view, how, rng);
-          test::fill(right.view, how, rng);
-          for (int y = 0; y < size.height; ++y)
-            for (int x = 0; x < size.width; ++x) {
-              left_inside.view.at(y, x) = rng() % 5 ? 255 : 0;
-              right_inside.view.at(y, x) = rng() % 5 ? 255 : 0;
-            }
-          test::Tight<std::int16_t> coarser(half_of(size)), want(size);
-          for (int y = 0; y < coarser.view.height(); ++y)
-            for (int x = 0; x < coarser.view.width(); ++x)
-              coarser.view.at(y, x) = static_cast<std::int16_t>(rng() % 3 ? 4 : static_cast<int>(rng() % 200) - 100);
-          MatchAround in{.left = left.view, .right = right.view, .radius = radius};
-          if (masked) in.left_inside = left_inside.view, in.right_inside = right_inside.view;
-          if (radius > 0) in.coarser = coarser.view;
-          if (radius == 0 && size.width > 70) continue;  // the plain loops are slow there
-          ref::match_around(in, want.view);
-          test::each_target([&](const std::string& target) {
-            for (Pool* pool : {&one, &two}) {
-              test::Tight<std::int16_t> got(size);
-              simd::MatchAroundScratch scratch(size);
-              simd::match_around(*pool, in, scratch, got.view);
-              test::expect_same<std::int16_t>(want.view, got.view, "match_around simd " + target + " radius " + std::to_string(radius));
-            }
-          });
-          if (HasFailure()) return;
-        }
+    for (const int radius : {0, 1, 3, 6, 12, 15})  // 0 stands for the lowest level
+      for (const bool masked : {false, true}) {
+        const test::Fill how = test::kFills[turn++ % std::size(test::kFills)];  // in the end each with each radius
+        test::Tight<std::uint8_t> left(size), right(size), left_inside(size), right_inside(size);
+        test::fill(left.view, how, rng);
+        test::fill(right.view, how, rng);
+        for (int y = 0; y < size.height; ++y)
+          for (int x = 0; x < size.width; ++x) {
+            left_inside.view.at(y, x) = rng() % 5 ? 255 : 0;
+            right_inside.view.at(y, x) = rng() % 5 ? 255 : 0;
+          }
+        test::Tight<std::int16_t> coarser(half_of(size)), want(size);
+        for (int y = 0; y < coarser.view.height(); ++y)
+          for (int x = 0; x < coarser.view.width(); ++x)
+            coarser.view.at(y, x) = static_cast<std::int16_t>(rng() % 3 ? 4 : static_cast<int>(rng() % 200) - 100);
+        MatchAround in{.left = left.view, .right = right.view, .radius = radius};
+        if (masked) in.left_inside = left_inside.view, in.right_inside = right_inside.view;
+        if (radius > 0) in.coarser = coarser.view;
+        if (radius == 0 && size.width > 70) continue;  // the plain loops are slow there
+        ref::match_around(in, want.view);
+        test::each_target([&](const std::string& target) {
+          for (Pool* pool : {&one, &two}) {
+            test::Tight<std::int16_t> got(size);
+            simd::MatchAroundScratch scratch(size);
+            simd::match_around(*pool, in, scratch, got.view);
+            test::expect_same<std::int16_t>(want.view, got.view,
+                                            "match_around simd " + target + " radius " + std::to_string(radius));
+          }
+        });
+        if (HasFailure()) return;
+      }
 }
 
 }  // namespace

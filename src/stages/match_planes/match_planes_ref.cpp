@@ -51,7 +51,7 @@ bool all_inside(View<const std::uint8_t> inside, int y, int x) {
 }  // namespace
 
 void match_planes(View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
-  DUO_CHECK(gray.size() == out.size && inside.empty() == out.outside.empty());
+  DUO_CHECK(gray.size() == out.size && (inside.empty() || inside.size() == out.size));
   const int w = gray.width(), h = gray.height(), pad = out.pad;
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
@@ -59,7 +59,7 @@ void match_planes(View<const std::uint8_t> gray, View<const std::uint8_t> inside
       out.value[0].at(y, pad + x) = gray.at(y, x);
       out.value[1].at(y, pad + x) = static_cast<std::uint8_t>(sobel(gray, y, x, true));
       out.value[2].at(y, pad + x) = static_cast<std::uint8_t>(sobel(gray, y, x, false));
-      if (!inside.empty()) out.outside.at(y, pad + x) = all_inside(inside, y, x) ? 0 : 255;
+      out.outside.at(y, pad + x) = inside.empty() || all_inside(inside, y, x) ? 0 : 255;
     }
   for (std::size_t c = 0; c < MatchPlanes::kChannels; ++c)
     for (int y = 0; y < h; ++y)
@@ -69,7 +69,7 @@ void match_planes(View<const std::uint8_t> gray, View<const std::uint8_t> inside
     for (auto& plane : out.census) out.continue_row(plane, y);
     for (auto* planes : {&out.value, &out.low, &out.high})
       for (auto& plane : *planes) out.continue_row(plane, y);
-    if (!inside.empty()) out.continue_row(out.outside, y);
+    out.continue_row(out.outside, y);
   }
 }
 

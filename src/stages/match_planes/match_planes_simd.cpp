@@ -95,15 +95,17 @@ void outside_row(View<const std::uint8_t> inside, int y, std::uint8_t* out) {
 }  // namespace
 
 void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
-  DUO_CHECK(gray.size() == out.size && inside.empty() == out.outside.empty() && out.pad >= PlaneImages::kPadRight);
+  DUO_CHECK(gray.size() == out.size && (inside.empty() || inside.size() == out.size) && out.pad >= PlaneImages::kPadRight);
   const int w = gray.width(), h = gray.height(), pad = out.pad;
   const auto row = [&](Image<std::uint8_t>& plane, int y) { return plane.row(std::clamp(y, 0, h - 1)) + pad; };
   pool.rows(h, [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
       std::copy_n(gray.row(y), w, row(out.value[0], y));
       out.continue_row(out.value[0], y);
-      if (inside.empty()) continue;
-      outside_row(inside, y, row(out.outside, y));
+      if (inside.empty())
+        std::fill_n(row(out.outside, y), w, std::uint8_t{0});
+      else
+        outside_row(inside, y, row(out.outside, y));
       out.continue_row(out.outside, y);
     }
   });

@@ -38,8 +38,8 @@ TEST(MatchTiles, FindsAShiftInBothViews) {
   EXPECT_LE(got.left.at(20, 0), 0) << "x = 0 can only have d = 0";
 }
 
-// By hand: flat left 100 against flat right 90, no gradients: each pixel costs |50 - 45| = 5, each window 245, every d ties: 0 wins,
-// and a V through equal costs has no tip.
+// By hand: flat left 100 against flat right 90, no gradients: each pixel costs |50 - 45| = 5, each window 245, every d ties: 0
+// wins, and a V through equal costs has no tip.
 TEST(MatchTiles, TieGoesToTheSmallest) {
   const auto left = test::constant<std::uint8_t>({60, 20}, 100), right = test::constant<std::uint8_t>({60, 20}, 90);
   Maps got(left.size());
@@ -86,34 +86,36 @@ void agree(const GrayPair& pair, const TileSets& sets, const MatchTilesParams& p
 
 TEST(MatchTiles, SimdAgrees) {
   std::mt19937 rng(13);
+  std::size_t turn = 0;
   auto sizes = test::awkward_sizes();
   sizes.insert(sizes.end(), {{47, 15}, {48, 16}, {49, 17}, {96, 33}, {100, 50}});
   for (const Size size : sizes)
-    for (const test::Fill how : test::kFills)
-      for (const bool masked : {false, true})
-        for (const int max_disparity : {1, 7, 64, 70}) {
-          test::Tight<std::uint8_t> left(size), right(size), left_inside(size), right_inside(size);
-          test::fill(left.view, how, rng);
-          for (int y = 0; y < size.height; ++y)
-            for (int x = 0; x < size.width; ++x) {
-              // Half of it a moved, slightly noisy copy, so that ties, winners and sub-pixel offsets all occur.
-              const int moved = left.view.at(y, std::min(x + 4, size.width - 1));
-              right.view.at(y, x) = static_cast<std::uint8_t>(rng() % 2 ? moved : std::min(255, moved + static_cast<int>(rng() % 9)));
-              left_inside.view.at(y, x) = x > 2 && rng() % 200 ? 255 : 0;
-              right_inside.view.at(y, x) = y > 0 && rng() % 200 ? 255 : 0;
-            }
-          TileSets sets(size, max_disparity);
-          for (int t = 0; t < sets.words.height(); ++t)
-            for (int d = 0; d < max_disparity; ++d)
-              if (rng() % 3) TileSets::add(sets.words.row(t), d);
-          GrayPair pair{left.view, right.view};
-          if (masked) pair.left_inside = left_inside.view, pair.right_inside = right_inside.view;
-          MatchTilesParams params;
-          params.wide_shifts = rng() % 2;
-          if (rng() % 2) params.truncation = 5, params.sobel_clip = 30;
-          agree(pair, sets, params, "match_tiles N " + std::to_string(max_disparity) + (masked ? " masked" : ""));
-          if (HasFailure()) return;
-        }
+    for (const bool masked : {false, true})
+      for (const int max_disparity : {1, 7, 64, 70}) {
+        const test::Fill how = test::kFills[turn++ % std::size(test::kFills)];  // in the end each with each number
+        test::Tight<std::uint8_t> left(size), right(size), left_inside(size), right_inside(size);
+        test::fill(left.view, how, rng);
+        for (int y = 0; y < size.height; ++y)
+          for (int x = 0; x < size.width; ++x) {
+            // Half of it a moved, slightly noisy copy, so that ties, winners and sub-pixel offsets all occur.
+            const int moved = left.view.at(y, std::min(x + 4, size.width - 1));
+            right.view.at(y, x) =
+                static_cast<std::uint8_t>(rng() % 2 ? moved : std::min(255, moved + static_cast<int>(rng() % 9)));
+            left_inside.view.at(y, x) = x > 2 && rng() % 200 ? 255 : 0;
+            right_inside.view.at(y, x) = y > 0 && rng() % 200 ? 255 : 0;
+          }
+        TileSets sets(size, max_disparity);
+        for (int t = 0; t < sets.words.height(); ++t)
+          for (int d = 0; d < max_disparity; ++d)
+            if (rng() % 3) TileSets::add(sets.words.row(t), d);
+        GrayPair pair{left.view, right.view};
+        if (masked) pair.left_inside = left_inside.view, pair.right_inside = right_inside.view;
+        MatchTilesParams params;
+        params.wide_shifts = rng() % 2;
+        if (rng() % 2) params.truncation = 5, params.sobel_clip = 30;
+        agree(pair, sets, params, "match_tiles N " + std::to_string(max_disparity) + (masked ? " masked" : ""));
+        if (HasFailure()) return;
+      }
 }
 
 }  // namespace

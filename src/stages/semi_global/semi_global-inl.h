@@ -68,12 +68,11 @@ struct RowPlanes {
       low[c] = planes.low[c].row(y) + offset;
       high[c] = planes.high[c].row(y) + offset;
     }
-    outside = planes.outside.empty() ? nullptr : planes.outside.row(y) + offset;
+    outside = planes.outside.row(y) + offset;
   }
 };
 
 /// One pixel's side of the cost, broadcast.
-template <bool kMasked>
 struct PixelCost {
   const RowPlanes& right;
   int x;
@@ -89,7 +88,7 @@ struct PixelCost {
     }
     census_most = set(params.census_truncation);
     most = set(params.truncation);
-    if (kMasked) outside = set(left.outside[x]);
+    outside = set(left.outside[x]);
   }
 
   HWY_INLINE V at(int j) const {
@@ -105,11 +104,8 @@ struct PixelCost {
       const auto to_left = hn::Or(hn::SaturatedSub(v, high[c]), hn::SaturatedSub(low[c], v));
       sum = hn::Add(sum, hn::Min(hn::Min(to_right, to_left), most));
     }
-    if (kMasked) {
-      const auto all = hn::Add(census_most, hn::Add(most, hn::Add(most, most)));
-      sum = hn::Max(sum, hn::And(all, hn::Or(outside, load(right.outside))));
-    }
-    return sum;
+    const auto all = hn::Add(census_most, hn::Add(most, hn::Add(most, most)));
+    return hn::Max(sum, hn::And(all, hn::Or(outside, load(right.outside))));
   }
 };
 

@@ -29,7 +29,7 @@ int distance(int value, int low, int high) { return std::max({value - high, low 
 int cost(const SemiGlobal& in, int y, int x, int d) {
   const SemiGlobalParams& p = in.params;
   const int r = std::max(x - d, 0);
-  if (!in.left.outside.empty() && (in.left.outside.at(y, x) != 0 || in.right.outside.at(y, r) != 0))
+  if (in.left.outside.at(y, x) != 0 || in.right.outside.at(y, r) != 0)
     return p.census_truncation + MatchPlanes::kChannels * p.truncation;
   int bits = 0, sum = 0;
   for (std::size_t i = 0; i < in.left.census.size(); ++i)

@@ -74,7 +74,7 @@ HWY_INLINE Before before(const Sweep& sweep, const std::uint8_t* gray, int x, co
 }
 
 /// A row on its way from left to right.
-template <bool kUp, bool kMasked, bool kDiagonals>
+template <bool kUp, bool kDiagonals>
 class Along {
  public:
   static constexpr int kPaths = kDiagonals ? 3 : 1;
@@ -102,7 +102,7 @@ class Along {
     const D d;
     const int n = static_cast<int>(hn::Lanes(d)), first = sweep_.first, lanes = sweep_.lanes;
     const std::ptrdiff_t stride = sweep_.s.stride, cell = static_cast<std::ptrdiff_t>(x) * lanes;
-    const PixelCost<kMasked> cost_of(left_, right_, sweep_.in.params, x);
+    const PixelCost cost_of(left_, right_, sweep_.in.params, x);
     const std::uint8_t* gray = left_.value[0];
     const Before from_left = before(sweep_, gray, x, gray, x - 1, before_, least_);
     constexpr int kFrom[3] = {0, kDiagonals ? -1 : 0, kDiagonals ? 1 : 0};
@@ -252,12 +252,12 @@ class Back {
 
 /// A thread walks along one row and back along its last one at the same time: each pixel of a path waits for the pixel before,
 /// and two such chains fill each other's waiting.
-template <bool kUp, bool kMasked, bool kDiagonals>
+template <bool kUp, bool kDiagonals>
 void run(const Sweep& sweep) {
   const std::size_t rows = 2 * static_cast<std::size_t>(sweep.thread);
   int last = -1, turn = 0;
   for (int i = sweep.thread; i < sweep.h; i += sweep.threads, turn ^= 1) {
-    Along<kUp, kMasked, kDiagonals> along(sweep, i, sweep.s.rows[rows + static_cast<std::size_t>(turn)]);
+    Along<kUp, kDiagonals> along(sweep, i, sweep.s.rows[rows + static_cast<std::size_t>(turn)]);
     Back back(sweep, std::max(last, 0), sweep.s.rows[rows + static_cast<std::size_t>(turn ^ 1)]);
     for (int begin = 0; begin < sweep.w; begin += kBlock) {
       const int end = std::min(begin + kBlock, sweep.w);
@@ -277,18 +277,14 @@ void run(const Sweep& sweep) {
   back.finish();
 }
 
-template <bool kUp, bool kMasked>
+template <bool kUp>
 void run(const Sweep& sweep) {
-  sweep.in.params.diagonals ? run<kUp, kMasked, true>(sweep) : run<kUp, kMasked, false>(sweep);
+  sweep.in.params.diagonals ? run<kUp, true>(sweep) : run<kUp, false>(sweep);
 }
 
 void sweep(const SemiGlobal& in, Scratch& scratch, const SemiGlobalMatch& out, int thread, int threads, bool up) {
   const Sweep here(in, scratch, out, thread, threads, up);
-  const bool masked = !in.left.outside.empty();
-  if (up)
-    masked ? run<true, true>(here) : run<true, false>(here);
-  else
-    masked ? run<false, true>(here) : run<false, false>(here);
+  up ? run<true>(here) : run<false>(here);
 }
 
 }  // namespace duo::HWY_NAMESPACE

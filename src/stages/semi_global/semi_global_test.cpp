@@ -9,8 +9,7 @@ namespace {
 struct Views {
   PlaneImages left, right;
   Views(View<const std::uint8_t> l, View<const std::uint8_t> r, View<const std::uint8_t> inside, int max_disparity)
-      : left(l.size(), simd::SemiGlobalScratch::padding(max_disparity), !inside.empty()),
-        right(l.size(), left.pad, !inside.empty()) {
+      : left(l.size(), simd::SemiGlobalScratch::padding(max_disparity)), right(l.size(), left.pad) {
     ref::match_planes(l, inside, left);
     ref::match_planes(r, inside, right);
   }
