@@ -63,9 +63,8 @@ inline double brightness(const Board& board, double u, double v) {
   if (x < 0 || y < 0 || x >= cells || y >= cells) return kWhite;
   if (x == 0 || y == 0 || x == cells - 1 || y == cells - 1) return kBlack;
   const int bits = board.marker_bits, id = (row * board.columns + column) / 2;  // whole rows before, half of them white
-  const auto& markers = bits == 4 ? kMarkers4x4 : bits == 5 ? kMarkers5x5 : kMarkers6x6;
   const int bit = bits * bits - 1 - ((y - 1) * bits + x - 1);
-  return (markers[static_cast<std::size_t>(id)] >> bit & 1) != 0 ? kWhite : kBlack;
+  return (marker_bits_of(bits, id) >> bit & 1) != 0 ? kWhite : kBlack;
 }
 
 /// What the camera sees: nine rays a pixel, and a webcam's noise.

@@ -51,6 +51,9 @@ Command add(CLI::App& app);
 namespace synth {
 Command add(CLI::App& app);
 }
+namespace board {
+Command add(CLI::App& app);
+}
 namespace calibrate {
 Command add(CLI::App& app);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -39,5 +40,25 @@ struct Board {
 /// Errors  another text; fewer than 3x3 or more than 50x50 squares; more markers than the dictionary has; a square outside
 /// 1 mm .. 1 m
 Result<Board> parse_board(std::string_view text, double square_m);
+
+/// A sheet, upright or lying, whichever takes the larger board.
+struct Paper {
+  std::string name;
+  double short_mm = 0, long_mm = 0;
+};
+
+/// "a4", "letter" or "a3".
+///
+/// Errors  another name
+Result<Paper> parse_paper(std::string_view name);
+
+/// The largest square of whole millimetres with which the board fits the paper; 0 = none does.
+double largest_square_m(const Board& board, const Paper& paper);
+
+/// Writes the board for printing, in true scale, with its name, a ruler of 100 mm and how to measure it. The ending of `path`
+/// decides: SVG and PDF have one vector path; PNG has 10 pixels a millimetre and says so.
+///
+/// Errors  another ending; the board does not fit the paper; those of every written file
+Result<void> write_board(const Board& board, const Paper& paper, const std::filesystem::path& path);
 
 }  // namespace duo

@@ -14,10 +14,6 @@ namespace {
 constexpr int kCell_px = 6;  // of a bit in the straightened marker
 constexpr double kMinSide_px = 8;
 
-const std::array<std::uint64_t, kMarkers>& dictionary(int bits) {
-  return bits == 4 ? kMarkers4x4 : bits == 5 ? kMarkers5x5 : kMarkers6x6;
-}
-
 /// How many wrong bits a dictionary forgives.
 int forgiven(int bits) { return bits == 4 ? 1 : bits == 5 ? 2 : 4; }
 
@@ -82,7 +78,7 @@ std::uint64_t turned(std::uint64_t marker, int bits) {  // a quarter clockwise
 std::pair<int, int> identify(std::uint64_t read, const Board& board) {
   const int count = board.columns * board.rows / 2, bits = board.marker_bits;
   for (int id = 0; id < count; ++id) {
-    std::uint64_t marker = dictionary(bits)[static_cast<std::size_t>(id)];
+    std::uint64_t marker = marker_bits_of(bits, id);
     for (int quarter = 0; quarter < 4; ++quarter, marker = turned(marker, bits))
       if (std::popcount(marker ^ read) <= forgiven(bits)) return {id, quarter};
   }
@@ -90,21 +86,28 @@ std::pair<int, int> identify(std::uint64_t read, const Board& board) {
 }
 
 /// Those that lie where the board has them; a chance reading elsewhere does not.
-std::vector<Marker> consistent(std::vector<Marker> markers, const Board& board, double side_px) {
+std::vector<Marker> consistent(const std::vector<Marker>& markers, const Board& board, double side_px) {
   if (markers.size() < 2) return {};
-  std::vector<cv::Point2f> on_board, in_picture;
+  std::vector<cv::Point2f> on_board, in_picture, expected;
   for (const Marker& marker : markers) {
-    const cv::Point2d place = marker_place(board, marker.id) + cv::Point2d(0.5, 0.5) * board.marker_share;
-    for (const cv::Point2f corner : marker.corners) in_picture.push_back(corner);
-    const double h = board.marker_share / 2;
-    for (const cv::Point2d offset : {cv::Point2d(-h, -h), cv::Point2d(h, -h), cv::Point2d(h, h), cv::Point2d(-h, h)})
+    const cv::Point2d place = marker_place(board, marker.id);
+    const double s = board.marker_share;
+    for (const cv::Point2d offset : {cv::Point2d(0, 0), cv::Point2d(s, 0), cv::Point2d(s, s), cv::Point2d(0, s)})
       on_board.emplace_back(place + offset);
+    in_picture.insert(in_picture.end(), marker.corners.begin(), marker.corners.end());
   }
-  std::vector<std::uint8_t> fits;
-  if (cv::findHomography(on_board, in_picture, cv::RANSAC, 0.2 * side_px, fits).empty()) return {};
+  const double reach_px = 0.2 * side_px;
+  // RANSAC's own verdict is that of its best four corners, which may be four of one marker and miss the far ones; that of the
+  // map refitted to all it took is the one that counts.
+  const cv::Mat map = cv::findHomography(on_board, in_picture, cv::RANSAC, reach_px);
+  if (map.empty()) return {};
+  cv::perspectiveTransform(on_board, expected, map);
   std::vector<Marker> kept;
-  for (std::size_t i = 0; i < markers.size(); ++i)
-    if (fits[4 * i] && fits[4 * i + 1] && fits[4 * i + 2] && fits[4 * i + 3]) kept.push_back(markers[i]);
+  for (std::size_t i = 0; i < markers.size(); ++i) {
+    double off_px = 0;
+    for (std::size_t k = 4 * i; k < 4 * i + 4; ++k) off_px = std::max(off_px, cv::norm(expected[k] - in_picture[k]));
+    if (off_px <= reach_px) kept.push_back(markers[i]);
+  }
   return kept;
 }
 

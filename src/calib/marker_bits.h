@@ -74,4 +74,9 @@ inline constexpr std::array<std::uint64_t, kMarkers> kMarkers6x6 = {
 };
 // clang-format on
 
+/// The marker with this id, of 4, 5 or 6 bits a side.
+inline std::uint64_t marker_bits_of(int bits, int id) {
+  return (bits == 4 ? kMarkers4x4 : bits == 5 ? kMarkers5x5 : kMarkers6x6)[static_cast<std::size_t>(id)];
+}
+
 }  // namespace duo
