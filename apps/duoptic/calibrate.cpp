@@ -26,7 +26,7 @@ constexpr char kFooter[] =
     "  duoptic calibrate shots/left shots/right --board charuco:9x6 --square-mm 30 -o rig.json";
 
 struct Options {
-  std::string left, right, board = "chessboard:9x6", output, left_name = "left", right_name = "right";
+  std::string left, right, board = "chessboard:9x6", output, report, left_name = "left", right_name = "right";
   double square_mm = 30, near_m = 0.5;
   bool json = false, quiet = false, no_board = false;
   FromSceneOptions from_scene;
@@ -39,6 +39,13 @@ std::string now_utc() {
   char text[32];
   std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
   return text;
+}
+
+/// rig.json gets rig_report.html.
+std::filesystem::path report_path(const Options& options) {
+  if (!options.report.empty()) return options.report;
+  const std::filesystem::path rig = options.output;
+  return rig.parent_path() / (rig.stem().string() + "_report.html");
 }
 
 nlohmann::json to_json(const Calibration& c, const Calibrator& calibrator, const RigDescription& description,
@@ -54,6 +61,8 @@ nlohmann::json to_json(const Calibration& c, const Calibrator& calibrator, const
                      {"right_corners", view.right.size()},
                      {"edge_px", view.sharp_px}});
   return {{"rig", options.output},
+          {"report", report_path(options).string()},
+          {"warnings", c.warnings},
           {"pairs", calibrator.pairs()},
           {"views", views},
           {"coverage", {calibrator.coverage(0), calibrator.coverage(1)}},
@@ -110,7 +119,26 @@ void print(const Calibration& c, const Calibrator& calibrator, const RigDescript
   fmt::print("for depth from {} m     --max-disparity {}\n", description.near_m, description.max_disparity);
   fmt::print("a quarter pixel is      {:.1f} mm at 1 m, {:.1f} mm at 2 m, {:.1f} mm at 3 m\n", 1000 * description.step_m[0],
              1000 * description.step_m[1], 1000 * description.step_m[2]);
+  fmt::print("written to              {}; report with plots: {}\n", options.output, report_path(options).string());
 }
+
+/// The pair that shows the most of the board of those that calibrate: near, so that a wrong rig would be seen.
+class ShownPair {
+ public:
+  void offer(const Pair& pair, const BoardView& view) {
+    if (!view.why_not.empty()) return;
+    double left_px = 1e9, right_px = 0;
+    for (const BoardCorner& c : view.left) left_px = std::min(left_px, c.x_px), right_px = std::max(right_px, c.x_px);
+    if (right_px - left_px <= width_px_) return;
+    width_px_ = right_px - left_px;
+    pair_.left.pixels = pair.left.pixels.clone(), pair_.right.pixels = pair.right.pixels.clone();
+  }
+  const Pair& pair() const { return pair_; }
+
+ private:
+  Pair pair_;
+  double width_px_ = 0;
+};
 
 Result<Exit> from_scene(const Options& options, const CLI::App& app) {
   FromSceneOptions all = options.from_scene;
@@ -127,11 +155,13 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   std::unique_ptr<Calibrator> calibrator;
   Progress progress(app, pictures.count(), options.quiet);
   Pair pair;
+  ShownPair shown;
   for (std::string name;;) {
     DUO_TRY_ASSIGN(const bool more, pictures.next(pair, name));
     if (!more) break;
     if (!calibrator) calibrator = std::make_unique<Calibrator>(board, pair.left.pixels.size());
-    DUO_TRY(calibrator->add(pair, name));
+    DUO_TRY_ASSIGN(const BoardView* view, calibrator->add(pair, name));
+    shown.offer(pair, *view);
     progress.frame(calibrator->pairs());
   }
   if (!calibrator) return Error{ErrorCode::kBadInput, fmt::format("cannot calibrate: {} has no pictures", options.left)};
@@ -141,12 +171,14 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   calibration.rig.date = now_utc();
   DUO_TRY_ASSIGN(const RigDescription description, describe_rig(calibration.rig, options.near_m));
   DUO_TRY(save_rig(calibration.rig, options.output));
+  DUO_TRY(write_calibration_report(calibration, board, description, shown.pair(), report_path(options)));
   if (options.json)
     fmt::print(
         "{}\n",
         to_json(calibration, *calibrator, description, options).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   else if (!options.quiet)
     print(calibration, *calibrator, description, options);
+  for (const std::string& warning : calibration.warnings) say(app, "warning: " + warning);
   if (!pictures.warning().empty()) say(app, "warning: " + pictures.warning());
   return pictures.cut() ? Exit::kCut : Exit::kOk;
 }
@@ -161,6 +193,8 @@ Command add(CLI::App& app) {
   sub->add_option("--board", options->board, "chessboard:9x6 (inner corners) or charuco:9x6 (squares)")->capture_default_str();
   sub->add_option("--square-mm", options->square_mm, "Side of a square as you measure it on the print")->capture_default_str();
   sub->add_option("-o,--output", options->output, "The rig file")->type_name("FILE")->required();
+  sub->add_option("--report", options->report, "The report (HTML); without it beside the rig, as RIG_report.html")
+      ->type_name("FILE");
   sub->add_option("--near", options->near_m, "Nearest depth in metres to print the disparities for")
       ->check(CLI::Range(0.05, 100.0))
       ->capture_default_str();

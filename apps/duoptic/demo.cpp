@@ -97,7 +97,7 @@ Result<void> track_person(const Options& options, const CLI::App& app) {
     arm.engine = options.engine;
     arm.tracker_preset = preset;
     const std::string video = (std::filesystem::path(options.folder) / fmt::format("arm_{}.mp4", preset)).string();
-    DUO_TRY_ASSIGN(eval_clip::ClipScore score, eval_clip::track_clip(clip, truth, arm, 0, video));
+    DUO_TRY_ASSIGN(eval_clip::ClipScore score, eval_clip::track_clip(clip, truth, truth.rig, arm, 0, video));
     if (!score.note.empty()) say(app, "warning: " + score.note);
     scores.push_back(std::move(score));
   }

@@ -22,13 +22,17 @@ constexpr char kFooter[] =
     "median, p95: error in mm where the joint is visible; bad: of these frames, lost or off by more than 100 mm; recover: the\n"
     "most frames from coming out after 5 or more hidden ones to being tracked again (> at the end still not); hidden, h.lost:\n"
     "median error and share lost while hidden; 3 sigma: share of seen and inferred positions inside what the tracker "
-    "claims.\n\n"
+    "claims. With --rig joints and depth are found with that rig and compared in its left camera's axes with the truth, which\n"
+    "is in the true left camera's: what a wrong rig does to distances counts as error. Depth is judged as disparity of that "
+    "rig.\n\n"
     "Examples:\n"
     "  duoptic eval clip data/sequences/dev_easy_wave\n"
-    "  duoptic eval clip clips/* --compare --json";
+    "  duoptic eval clip clips/* --compare --json\n"
+    "  duoptic eval clip data/sequences/dev_easy_wave --rig rig.json";
 
 struct Options {
   std::vector<std::string> folders;
+  std::string rig;  // empty: each clip's true one
   double jitter_px = 0;
   bool compare = false, json = false;
   ArmOptions arm;
@@ -52,9 +56,9 @@ JointSample sample(const JointTruth& truth, const Keypoint& found, const Mat3& r
 
 }  // namespace
 
-Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, const ArmOptions& options, double jitter_px,
-                             const std::string& video) {
-  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open((folder / "left.avi").string(), (folder / "right.avi").string(), truth.rig, options));
+Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, const Rig& rig, const ArmOptions& options,
+                             double jitter_px, const std::string& video) {
+  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open((folder / "left.avi").string(), (folder / "right.avi").string(), rig, options));
   const Rectified& rectified = run.recording().rectified;
   ClipScore score{truth.name, options.tracker_preset, truth.first_visible(), 0, 0, {}, {}, {}};
   std::unique_ptr<Sink> sink;
@@ -168,17 +172,22 @@ Result<Exit> run(const Options& options) {
   std::vector<ClipScore> scores;
   for (const std::string& folder : options.folders) {
     DUO_TRY_ASSIGN(const ClipTruth truth, load_clip(folder));
+    Rig rig = truth.rig;
+    if (!options.rig.empty()) {
+      DUO_TRY_ASSIGN(rig, load_rig(options.rig));
+    }
     Options one = options;
     std::vector<std::string> presets = {options.arm.tracker_preset};
     if (options.compare) presets = {"default", "thesis"};
     for (const std::string& preset : presets) {
       one.arm.tracker_preset = preset;
-      DUO_TRY_ASSIGN(ClipScore score, track_clip(folder, truth, one.arm, options.jitter_px));
+      DUO_TRY_ASSIGN(ClipScore score, track_clip(folder, truth, rig, one.arm, options.jitter_px));
       scores.push_back(std::move(score));
     }
   }
   if (options.json) {
-    nlohmann::json out = {{"bad_mm", kBad_mm}, {"jitter_px", options.jitter_px}, {"clips", nlohmann::json::array()}};
+    nlohmann::json out = {
+        {"bad_mm", kBad_mm}, {"jitter_px", options.jitter_px}, {"rig", options.rig}, {"clips", nlohmann::json::array()}};
     for (const ClipScore& score : scores) out["clips"].push_back(to_json(score));
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     return Exit::kOk;
@@ -193,6 +202,7 @@ Command add(CLI::App& eval) {
   CLI::App* sub = eval.add_subcommand("clip", "The tracker on clips with exact joints and depth");
   const auto options = std::make_shared<Options>();
   sub->add_option("DIR", options->folders, "Folder of a clip")->required();
+  sub->add_option("--rig", options->rig, "Tracks with this rig in place of the clips' true one")->type_name("FILE");
   options->arm.add_to(*sub);
   sub->add_option("--jitter", options->jitter_px, "Moves each click by PX, as a hand would")
       ->type_name("PX")

@@ -19,10 +19,10 @@ struct ClipScore {
   std::string note;  // what there is to say about the video
 };
 
-/// Tracks the selected arm from the first frame that shows all of it, each click moved by `jitter_px`; draws the panels into
-/// `video` when it is given (its time is not counted).
-Result<ClipScore> track_clip(const std::filesystem::path& folder, const ClipTruth& truth, const ArmOptions& options,
-                             double jitter_px, const std::string& video = {});
+/// With `rig` (the true one of the clip, or one found for its cameras) tracks the selected arm from the first frame that shows
+/// all of it, each click moved by `jitter_px`; draws the panels into `video` when it is given (its time is not counted).
+Result<ClipScore> track_clip(const std::filesystem::path& folder, const ClipTruth& truth, const Rig& rig,
+                             const ArmOptions& options, double jitter_px, const std::string& video = {});
 
 /// The table of scores, with its heading.
 void print(const std::vector<ClipScore>& scores);

@@ -25,6 +25,7 @@ struct BoardView {
   std::vector<BoardCorner> left, right;  // in order of their ids; empty where the board was not found
   double sharp_px = 0;                   // how far an edge of the board is spread, the worse of both pictures
   bool used = false;                     // by the calibration
+  bool rejected = false;                 // by it, because it does not fit the others
   std::string why_not;                   // one line when it was not
 };
 
@@ -33,7 +34,7 @@ struct Calibration {
   std::vector<BoardView> views;  // all in which a board was found
   double held_out_shape_m = 0;   // held-out boards measured with the rig: rms distance of their corners from the true shape,
   double held_out_z_m = 0;       // and how far they were, on average
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings;  // what to know before trusting it, one line each, and what to do; none = good
 };
 
 /// Collects views of a board, from files or from live cameras alike, and calibrates.
@@ -53,7 +54,7 @@ class Calibrator {
 
   /// Looks for the board in both pictures and keeps what it finds.
   ///
-  /// Errors  the pictures do not have the size of the first
+  /// Errors  the pictures do not have the size of the first; the first that look like a board show another one than named
   Result<const BoardView*> add(const Pair& pair, const std::string& name);
 
   int pairs() const;  // looked at
@@ -83,5 +84,17 @@ struct RigDescription {
 
 /// Errors  those of every rig; near_m not above zero
 Result<RigDescription> describe_rig(const Rig& rig, double near_m);
+
+/// The report with its plots: one HTML file that needs nothing else. `shown` is a pair of the calibrated cameras, of which the
+/// rectified pictures are shown.
+///
+/// Errors  those of rectify_pair() and of every written file
+Result<void> write_calibration_report(const Calibration& calibration, const Board& board, const RigDescription& can,
+                                      const Pair& shown, const std::filesystem::path& path);
+
+/// Both pictures rectified, in colour, black where a raw picture does not reach.
+///
+/// Errors  those of every rig; pictures of another size
+Result<Pair> rectify_pair(const Rig& rig, const Pair& pair);
 
 }  // namespace duo

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
+#include "calib/doubt_calibration.h"
 #include "calib/find_board.h"
 #include "calib/judge_bundle.h"
 #include "calib/start_bundle.h"
@@ -19,6 +21,7 @@ constexpr std::size_t kMinViews = 6, kMaxViews = 40, kMinCorners = 8;
 constexpr double kMinTilt_rad = 10 * std::numbers::pi / 180;
 constexpr double kMaxSpread = 0.12, kMaxSpread_px = 3;  // of a blurred edge: share of a square, and px
 constexpr double kRefusedRms_px = 1, kRefusedRow_px = 0.75;
+constexpr double kPoorView_px = 0.3, kPoorView = 2.5;  // rms of a view's corners; and of the median view's
 constexpr std::size_t kKeptPictures = 3;
 
 Error refused(const std::string& why) { return {ErrorCode::kBadInput, "cannot calibrate: " + why}; }
@@ -108,10 +111,12 @@ struct Calibrator::State {
   Size size;
   int pairs = 0;
   std::vector<BoardView> views;
-  std::vector<cv::Mat> without_board;  // the first pictures in which it was not found
+  bool any_found = false;
+  std::vector<cv::Mat> look_alikes, without_board;  // the first pictures that may show another board, and of all others
 
   BoardView look(const Pair& pair, const std::string& name);
   Result<std::vector<const BoardView*>> usable() const;
+  std::optional<Error> another_board() const;
   Error no_board() const;
   Error disagreeing(const std::vector<const BoardView*>& views) const;
   Result<Bundle> fit(std::vector<const BoardView*>& views, std::vector<std::string>& rejected) const;
@@ -124,7 +129,10 @@ BoardView Calibrator::State::look(const Pair& pair, const std::string& name) {
   for (const bool left : {true, false}) {
     const cv::Mat gray = gray_of(left ? pair.left : pair.right);
     FoundBoard found = find_board(gray, board);
-    if (found.corners.empty() && without_board.size() < kKeptPictures) without_board.push_back(gray);
+    if (std::vector<cv::Mat>& kept = found.looks_like_one ? look_alikes : without_board;
+        found.corners.empty() && kept.size() < kKeptPictures)
+      kept.push_back(gray);
+    any_found = any_found || !found.corners.empty();
     if (!found.corners.empty()) {
       const double spread_px = edge_spread_px(gray, board, found);
       view.sharp_px = std::max(view.sharp_px, spread_px);
@@ -142,20 +150,27 @@ BoardView Calibrator::State::look(const Pair& pair, const std::string& name) {
   return view;
 }
 
+std::optional<Error> Calibrator::State::another_board() const {
+  for (const auto* pictures : {&look_alikes, &without_board})
+    for (const cv::Mat& gray : *pictures) {
+      const std::string seen = name_any_chessboard(gray);
+      if (!seen.empty() && seen != fmt::format("{}x{}", std::max(board.inner_columns(), board.inner_rows()),
+                                               std::min(board.inner_columns(), board.inner_rows())))
+        return refused(fmt::format("a {} was looked for, but the pictures show {} inner corners; give --board chessboard:{}",
+                                   corner_words(board), seen, seen));
+    }
+  return {};
+}
+
 Error Calibrator::State::no_board() const {
-  for (const cv::Mat& gray : without_board) {
-    if (board.kind == Board::Kind::kCharuco) {
+  if (board.kind == Board::Kind::kCharuco)
+    for (const cv::Mat& gray : without_board) {
       cv::Mat flipped;
       cv::flip(gray, flipped, 1);
       if (!find_board(flipped, board).corners.empty())
         return refused("the pictures are mirrored; switch off the mirror of the camera program");
     }
-    if (const std::string seen = name_any_chessboard(gray);
-        !seen.empty() && seen != fmt::format("{}x{}", std::max(board.inner_columns(), board.inner_rows()),
-                                             std::min(board.inner_columns(), board.inner_rows())))
-      return refused(fmt::format("a {} was looked for, but the pictures show {} inner corners; give --board chessboard:{}",
-                                 corner_words(board), seen, seen));
-  }
+  if (const auto error = another_board()) return *error;
   return refused(fmt::format(
       "no {} found in any of {} pairs; it must be whole in both pictures, lit evenly and sharp (and named by --board)",
       corner_words(board), pairs));
@@ -211,13 +226,14 @@ Result<Bundle> Calibrator::State::fit(std::vector<const BoardView*>& used, std::
   for (;;) {
     if (!adjust(used, board, bundle))
       return refused("the views do not determine both cameras; tilt the board and show it all over the picture");
-    // A view that fits four times worse than most: the board moved between both pictures, or was bent, or misread.
+    // Noise alone makes views differ by a tenth. One that fits much worse than most: the board moved between both pictures,
+    // or was bent, or misread.
     std::vector<double> rms;
     for (const BoardPose& pose : bundle.poses) rms.push_back(std::max(pose.rms_px[0], pose.rms_px[1]));
     std::vector<double> sorted = rms;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
     const auto worst = std::max_element(rms.begin(), rms.end()) - rms.begin();
-    if (rms[static_cast<std::size_t>(worst)] < std::max(0.3, 4 * sorted[sorted.size() / 2])) break;
+    if (rms[static_cast<std::size_t>(worst)] < std::max(kPoorView_px, kPoorView * sorted[sorted.size() / 2])) break;
     rejected.push_back(used[static_cast<std::size_t>(worst)]->name);
     used.erase(used.begin() + worst), bundle.poses.erase(bundle.poses.begin() + worst);
     if (used.size() < kMinViews || 3 * rejected.size() > all)
@@ -256,7 +272,11 @@ Result<const BoardView*> Calibrator::add(const Pair& pair, const std::string& na
                                  picture == &pair.left ? "left" : "right", name, size.width, size.height, state_->size.width,
                                  state_->size.height));
   ++state_->pairs;
+  const bool first_look_alikes = state_->look_alikes.size() < kKeptPictures;
   state_->views.push_back(state_->look(pair, name));
+  // The search for what is not there takes seconds a picture: no need to go through all of them.
+  if (first_look_alikes && state_->look_alikes.size() == kKeptPictures && !state_->any_found)
+    if (const auto error = state_->another_board()) return *error;
   return &state_->views.back();
 }
 
@@ -305,9 +325,9 @@ Result<Calibration> Calibrator::solve() const {
   for (BoardView& view : out.views) {
     const auto at = std::find_if(used.begin(), used.end(), [&](const BoardView* u) { return u->name == view.name; });
     if (at == used.end()) {
-      if (view.why_not.empty())
-        view.why_not =
-            std::count(rejected.begin(), rejected.end(), view.name) > 0 ? "does not fit the others" : "much like another";
+      if (!view.why_not.empty()) continue;
+      view.rejected = std::count(rejected.begin(), rejected.end(), view.name) > 0;
+      view.why_not = view.rejected ? "does not fit the others" : "much like another";
       continue;
     }
     view.used = true;
@@ -318,6 +338,7 @@ Result<Calibration> Calibrator::solve() const {
         c.dx_px = c.x_px - p.x(), c.dy_px = c.y_px - p.y();
       }
   }
+  out.warnings = doubts_of(out);
   return out;
 }
 

@@ -4,8 +4,10 @@ target_sources(duoptic PRIVATE ${dir}/align_match.cpp ${dir}/opencv_rectified.cp
   ${dir}/rig_check.cpp ${dir}/rig_doubts.cpp ${dir}/rig_files.cpp ${dir}/rig_health.cpp ${dir}/rig_json.cpp
   ${dir}/rig_kalibr.cpp ${dir}/rig_opencv.cpp ${dir}/rig_ros.cpp ${dir}/rig_yaml.cpp ${dir}/scene_matches.cpp
   ${dir}/scene_pose.cpp ${dir}/yaml_reader.cpp)
-target_sources(duoptic PRIVATE ${dir}/board.cpp ${dir}/board_files.cpp ${dir}/board_page.cpp ${dir}/bundle.cpp ${dir}/calibrate.cpp ${dir}/describe.cpp
-  ${dir}/find_board.cpp ${dir}/find_markers.cpp ${dir}/judge_bundle.cpp ${dir}/refine_corners.cpp ${dir}/start_bundle.cpp)
+target_sources(duoptic PRIVATE ${dir}/board.cpp ${dir}/board_files.cpp ${dir}/board_page.cpp ${dir}/bundle.cpp
+  ${dir}/calibrate.cpp ${dir}/calibration_report.cpp ${dir}/describe.cpp ${dir}/doubt_calibration.cpp ${dir}/find_board.cpp
+  ${dir}/find_markers.cpp ${dir}/judge_bundle.cpp ${dir}/rectify_pair.cpp ${dir}/refine_corners.cpp ${dir}/report_plots.cpp
+  ${dir}/start_bundle.cpp)
 duoptic_test(calib/align_match ${dir}/align_match_test.cpp)
 duoptic_test(calib/board ${dir}/board_test.cpp)
 duoptic_test(calib/calibrate ${dir}/calibrate_test.cpp)

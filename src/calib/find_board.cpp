@@ -30,8 +30,10 @@ FoundBoard find_chessboard(const cv::Mat& gray, const Board& board) {
   // Pictures without a board are told by the fast check; only those that pass it and still fail are searched the long way.
   if (!cv::findChessboardCorners(gray, size, corners, kFlags | cv::CALIB_CB_FAST_CHECK)) {
     if (!cv::checkChessboard(gray, size)) return found;
-    if (!cv::findChessboardCorners(gray, size, corners, kFlags) && !cv::findChessboardCornersSB(gray, size, corners))
+    if (!cv::findChessboardCorners(gray, size, corners, kFlags) && !cv::findChessboardCornersSB(gray, size, corners)) {
+      found.looks_like_one = true;
       return found;
+    }
   }
   for (std::size_t i = 0; i < corners.size(); ++i) found.corners.push_back({static_cast<int>(i), corners[i].x, corners[i].y});
   return found;

@@ -12,7 +12,8 @@ namespace duo {
 /// A board in one picture, corners in order of their ids; none = not found.
 struct FoundBoard {
   std::vector<BoardCorner> corners;
-  double spacing_px = 0;  // mean distance of neighbours
+  double spacing_px = 0;        // mean distance of neighbours
+  bool looks_like_one = false;  // a chessboard, but not the one that was looked for
 };
 
 /// All corners of a chessboard, or those of a ChArUco board whose markers are seen.
