@@ -10,6 +10,7 @@ target_sources(duoptic PRIVATE ${dir}/board.cpp ${dir}/board_files.cpp ${dir}/bo
   ${dir}/start_bundle.cpp)
 duoptic_test(calib/align_match ${dir}/align_match_test.cpp)
 duoptic_test(calib/board ${dir}/board_test.cpp)
+duoptic_test(calib/board_sets ${dir}/board_sets_test.cpp)
 duoptic_test(calib/calibrate ${dir}/calibrate_test.cpp)
 duoptic_test(calib/clips ${dir}/clips_test.cpp)
 duoptic_test(calib/rectification ${dir}/rectification_test.cpp)
@@ -18,5 +19,7 @@ duoptic_test(calib/rig_files ${dir}/rig_files_test.cpp)
 duoptic_test(calib/rig_health ${dir}/rig_health_test.cpp)
 duoptic_test(calib/scene_clips ${dir}/scene_clips_test.cpp)
 if(DUO_TESTS)
+  # They read tests/data and the test data beside the project.
+  set_tests_properties(calib/board calib/board_sets PROPERTIES WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   target_link_libraries(calib_rig_files_test PRIVATE opencv::core)  # reads what we write for it
 endif()
