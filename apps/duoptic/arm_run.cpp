@@ -26,9 +26,11 @@ Result<double> frame_interval_s(const std::string& path) {
   return interval_s > 0 ? interval_s : kUsual_s;
 }
 
+/// As far as `z_m` needs, but no farther than every matcher can search: a large picture starts at a greater depth.
 int disparity_at(double z_m, const Rig& rig) {
+  constexpr int kMost = 256;
   const double d_px = rig.left.fx_px * rig.baseline_m() / z_m;
-  return std::clamp((static_cast<int>(d_px) / 16 + 1) * 16, 16, Engine::kMaxDisparity);
+  return std::clamp((static_cast<int>(d_px) / 16 + 1) * 16, 16, kMost);
 }
 
 }  // namespace
@@ -36,7 +38,7 @@ int disparity_at(double z_m, const Rig& rig) {
 void ArmOptions::add_to(CLI::App& app) {
   engine.add_to(app);
   app.add_option("--max-disparity", max_disparity,
-                 fmt::format("Searches 0 .. N-1 px; without it, as far as {} m needs", ArmRun::kNearest_m))
+                 fmt::format("Searches 0 .. N-1 px; without it, as far as {} m needs, 256 at most", ArmRun::kNearest_m))
       ->type_name("N")
       ->check(CLI::Range(1, Engine::kMaxDisparity));
   app.add_option("--tracker-preset", tracker_preset, "thesis: three blobs as in 2010; default: what survives hiding")
