@@ -98,6 +98,12 @@ Result<Exit> refine(const Options& options, const CLI::App& app) {
   }
   if (!pairs->warning().empty()) say(app, "warning: " + pairs->warning());
   if (!found.after.missing.empty()) say(app, "warning: no points in " + found.after.missing + "; move the rig and try again");
+  if (found.after.verdict == RigVerdict::kCanBeImproved && found.after.pan_px > 2 * found.after.pan_sigma_px)
+    say(app,
+        fmt::format(
+            "warning: this scene cannot tell the pan well, and the rig's may be wrong by {:.1f} +- {:.1f} px of disparity; "
+            "show one with points near and far all over the picture, or calibrate with a board",
+            found.after.pan_px, found.after.pan_sigma_px));
   if (!useful)
     say(app, fmt::format("the rig cannot be put right by this scene (rows {:.2f} px off); calibrate with a board",
                          found.after.row_px));

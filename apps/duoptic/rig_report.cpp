@@ -49,8 +49,8 @@ std::string describe(const SceneHealth& h) {
   text += fmt::format(
       "pose     the scene has the right camera turned from the rig's by tilt {:.3f} +- {:.3f}, pan {:.3f} +- {:.3f}, roll "
       "{:.3f} +- "
-      "{:.3f} degrees; the pan shifts disparities by {:.1f} px\n",
-      turned.x, sigma.x, turned.y, sigma.y, turned.z, sigma.z, h.pan_px);
+      "{:.3f} degrees; that pan shifts disparities by {:.1f} +- {:.1f} px\n",
+      turned.x, sigma.x, turned.y, sigma.y, turned.z, sigma.z, h.pan_px, h.pan_sigma_px);
   return text;
 }
 
@@ -65,7 +65,8 @@ nlohmann::json to_json(const SceneHealth& h) {
           {"row_p95_px", h.row_p95_px},
           {"turned_deg", list(kDeg * h.turned_rad)},
           {"turned_sigma_deg", list(kDeg * h.turned_sigma_rad)},
-          {"pan_px", h.pan_px}};
+          {"pan_px", h.pan_px},
+          {"pan_sigma_px", h.pan_sigma_px}};
 }
 
 std::string date_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }

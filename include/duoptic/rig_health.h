@@ -37,7 +37,7 @@ struct SceneHealth {
   double row_px = 0;          // difference of rows that is no noise: medians in twelve parts of the picture, root mean square
   double row_median_px = 0, row_p95_px = 0;  // of single points, noise and wrong matches included
   Vec3 turned_rad, turned_sigma_rad;         // how the right camera is turned from where the rig has it, around its x, y, z
-  double pan_px = 0;                         // what of that shifts all disparities, at the focal length
+  double pan_px = 0, pan_sigma_px = 0;       // what of that shifts all disparities, at the focal length
   bool cut = false;                          // the stream was cut short; its whole pairs were used
 };
 

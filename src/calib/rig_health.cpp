@@ -100,14 +100,21 @@ Result<Evidence> gather(const Rig& lenses, PairSource& pairs, int threads) {
   return evidence;
 }
 
-/// A pan counts when the scene is sure of it.
-bool sure_of_pan(const SceneHealth& health) { return std::abs(health.turned_rad.y) > 4 * health.turned_sigma_rad.y; }
+/// By how many standard deviations the scene has another pan than the rig.
+double pan_sigmas(const SceneHealth& health) {
+  return std::abs(health.turned_rad.y) / std::max(1e-12, health.turned_sigma_rad.y);
+}
+
+/// A pan counts when the scene is sure of it: small errors of lenses look the same.
+bool sure_of_pan(const SceneHealth& health) { return pan_sigmas(health) > 4; }
 
 RigVerdict verdict_of(const SceneHealth& health, bool metric) {
-  constexpr double kGoodPan_px = 0.5, kUselessPan_px = 2;  // below that, small errors of lenses look the same
+  constexpr double kGoodPan_px = 0.5, kUselessPan_px = 2, kDoubtedPan_sigmas = 2.5;
   const bool sure = metric && sure_of_pan(health);
   if (health.row_px >= kUselessRow_px || (sure && health.pan_px >= kUselessPan_px)) return RigVerdict::kRecalibrate;
   if (health.row_px >= kGoodRow_px || (sure && health.pan_px >= kGoodPan_px)) return RigVerdict::kCanBeImproved;
+  // Not sure, but enough to spoil every depth if it is true: no rig to call good.
+  if (metric && pan_sigmas(health) > kDoubtedPan_sigmas && health.pan_px >= kUselessPan_px) return RigVerdict::kCanBeImproved;
   return RigVerdict::kGood;
 }
 
@@ -132,6 +139,7 @@ Result<SceneHealth> judge(const Rig& rig, const Evidence& evidence) {
   health.turned_rad = free.turned_rad;
   health.turned_sigma_rad = free.turn_sigma_rad;
   health.pan_px = std::abs(free.turned_rad.y) * rig.left.fx_px;
+  health.pan_sigma_px = free.turn_sigma_rad.y * rig.left.fx_px;
   health.verdict = verdict_of(health, rig.metric);
   return health;
 }

@@ -46,6 +46,12 @@ TEST_P(Clips, FromSceneRefineAndCheck) {
     EXPECT_EQ(refined->after.verdict, RigVerdict::kGood);
     EXPECT_LT(true_row_error_px(refined->rig, *truth), 0.5);
   }
+  // Turned every way at once: where the scene does not tell the pan, the rig must not be called good.
+  const auto refined = refine_rig(right_turned(*truth, turn(1, -0.5, 0.5)), *pairs(), 2);
+  ASSERT_TRUE(refined) << refined.error().what;
+  EXPECT_LT(true_row_error_px(refined->rig, *truth), 0.5);
+  const double pan_px = std::abs(wrong_turn_deg(refined->rig, *truth).y) * kDeg * truth->left.fx_px;
+  EXPECT_TRUE(pan_px < 2 || refined->after.verdict != RigVerdict::kGood) << pan_px;
 }
 
 INSTANTIATE_TEST_SUITE_P(Rendered, Clips, testing::Values("dev_easy_wave", "dev_hard_beige"));
