@@ -1,8 +1,10 @@
 // duoptic calibrate: pictures of a board in, a rig out that says how good it is.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -92,6 +94,20 @@ nlohmann::json to_json(const Calibration& c, const Calibrator& calibrator, const
           {"depth_step_at_1_2_3_m", description.step_m}};
 }
 
+/// A line a reason, with the first few views that it left out.
+void print_unused(const std::vector<BoardView>& views) {
+  constexpr std::size_t kNamed = 4;
+  std::map<std::string, std::vector<std::string>> names;
+  for (const BoardView& view : views)
+    if (!view.used && view.why_not != "no board found" && view.why_not != "much like another")
+      names[view.why_not.substr(0, view.why_not.find(':'))].push_back(view.name);
+  for (auto& [why, of] : names) {
+    const std::size_t count = of.size();
+    if (count > kNamed) of.resize(kNamed), of.push_back("...");
+    fmt::print("  {} not used: {} ({})\n", count, why, fmt::join(of, "; "));
+  }
+}
+
 void print(const Calibration& c, const Calibrator& calibrator, const RigDescription& description, const Options& options) {
   const Rig& rig = c.rig;
   const RigErrors& e = rig.errors;
@@ -99,9 +115,7 @@ void print(const Calibration& c, const Calibrator& calibrator, const RigDescript
   const auto used = std::count_if(c.views.begin(), c.views.end(), [](const BoardView& v) { return v.used; });
   fmt::print("{} of {} pairs used; corners cover {:.0f} % of the left picture and {:.0f} % of the right\n", used,
              calibrator.pairs(), 100 * calibrator.coverage(0), 100 * calibrator.coverage(1));
-  for (const BoardView& view : c.views)
-    if (!view.used && view.why_not != "no board found" && view.why_not != "much like another")
-      fmt::print("  {} not used: {}\n", view.name, view.why_not);
+  print_unused(c.views);
   fmt::print("error of the corners    {:.3f} px (left {:.3f}, right {:.3f}); of rows {:.3f} px\n", rig.reprojection_rms_px,
              e.left_px, e.right_px, e.row_px);
   fmt::print("on views left out       {:.3f} px, rows {:.3f} px; boards {:.2f} m away measured to {:.1f} mm\n", e.held_out_px,

@@ -73,6 +73,29 @@ std::string corner_words(const Board& board) {
                            board.marker_bits);
 }
 
+/// The same pose of the board again, as a video of a board held still gives them. Their corners err alike, too: counted twice
+/// they would make the result look surer than it is.
+bool alike(const BoardView& a, const BoardView& b, Size size) {
+  constexpr double kAlike = 0.01;  // of the picture's width
+  double sum_px = 0;
+  int count = 0;
+  for (const BoardCorner& c : a.left)
+    for (const BoardCorner& d : b.left)
+      if (c.id == d.id) sum_px += std::hypot(c.x_px - d.x_px, c.y_px - d.y_px), ++count;
+  return count > 0 && sum_px / count < kAlike * size.width;
+}
+
+/// Of views that are alike, the sharpest.
+std::vector<const BoardView*> apart(std::vector<const BoardView*> views, Size size) {
+  std::stable_sort(views.begin(), views.end(),
+                   [](const BoardView* a, const BoardView* b) { return a->sharp_px < b->sharp_px; });
+  std::vector<const BoardView*> out;
+  for (const BoardView* view : views)
+    if (std::none_of(out.begin(), out.end(), [&](const BoardView* other) { return alike(*view, *other, size); }))
+      out.push_back(view);
+  return out;
+}
+
 /// Views spread over places, distances and tilts: each time the one farthest from those taken (Gonzalez, 1985).
 std::vector<const BoardView*> spread(const std::vector<const BoardView*>& views, Size size) {
   if (views.size() <= kMaxViews) return views;
@@ -185,7 +208,8 @@ Result<std::vector<const BoardView*>> Calibrator::State::usable() const {
     if (view.why_not.empty()) out.push_back(&view);
   }
   if (found == 0) return no_board();
-  if (out.size() >= kMinViews) return spread(out, size);
+  if (const auto different = apart(out, size); different.size() >= kMinViews) return spread(different, size);
+  if (out.size() >= kMinViews) return out;
   if (blurred > 0 && out.size() + blurred >= kMinViews)
     return refused(fmt::format("{} of {} views are blurred; hold the board still, use more light, check the focus", blurred,
                                views.size()));
