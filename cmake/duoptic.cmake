@@ -5,10 +5,10 @@
 add_library(duoptic_flags INTERFACE)
 target_compile_options(duoptic_flags INTERFACE -Wall -Wextra -Werror -ffp-contract=off)
 # g++ 12 lacks what Highway's newest baseline asks for; with EMU128 allowed the baseline is tested like every other target.
-# SSSE3 and AVX-512 without its later parts are left out: the few processors that have them lose little to SSE2 and AVX2, and each
-# target has its share of the compile time.
+# SSSE3 and AVX-512 without its later parts (byte counts and permutes) are left out: the few processors that have them lose little to
+# SSE2 and AVX2, and each target has its share of the compile time.
 set(DUO_DISABLED_TARGETS "HWY_SSSE3|HWY_AVX3" CACHE STRING "Instruction sets not to compile for, as Highway's HWY_ names joined by |")
-target_compile_definitions(duoptic_flags INTERFACE HWY_BROKEN_EMU128=0 "HWY_DISABLED_TARGETS=(${DUO_DISABLED_TARGETS})")
+target_compile_definitions(duoptic_flags INTERFACE HWY_BROKEN_EMU128=0 HWY_WANT_AVX3_DL "HWY_DISABLED_TARGETS=(${DUO_DISABLED_TARGETS})")
 
 function(duoptic_shader source)
   get_filename_component(name ${source} NAME)
