@@ -12,7 +12,7 @@ namespace duo {
 namespace {
 
 constexpr std::size_t kFewViews = 12;
-constexpr double kUncertainDepth = 0.015;  // of the distance; a quarter pixel at 1.5 m is about that
+constexpr double kUncertainDepth = 0.015;  // of the distance
 
 /// Ninths of a picture in which no used view has a corner, in words.
 std::vector<std::string> blank_ninths(const Calibration& calibration, bool left, Size size) {
