@@ -57,18 +57,18 @@ void Arm::track(const Scene& scene, std::span<const Vec3> rivals) {
   learn(scene, seen.arm);
 }
 
-// The shoulder rides on the torso; the collar bone moves it with the upper arm.
+// The shoulder rides on the torso; the collar bone moves it with the upper arm, of some people more than of others.
 void Arm::update_shoulder(const Grid& grid) {
-  constexpr double kMostUpM = 0.09, kMostDownM = 0.06, kMostForwardM = 0.04;
+  constexpr double kMostUpM = 0.05, kMostDownM = 0.06, kMostForwardM = 0.04, kLiftDoubt = 0.4;
   const Vec3 before = shoulder_.p;
   const Vec3 turned = transposed(torso_.rig_from_torso().rotation) * normalized(elbow_.p - shoulder_.p) - first_upper_;
-  shoulder_.p =
-      torso_.rig_from_torso() * Vec3{0, std::clamp(params_.shoulder_lift_m * turned.y, -kMostUpM, kMostDownM),
-                                     std::clamp(params_.shoulder_forward_m * turned.z, -kMostForwardM, kMostForwardM)};
+  const double lift_m = std::clamp(params_.shoulder_lift_m * turned.y, -kMostUpM, kMostDownM),
+               forward_m = std::clamp(params_.shoulder_forward_m * turned.z, -kMostForwardM, kMostForwardM);
+  shoulder_.p = torso_.rig_from_torso() * (Vec3{0, lift_m, forward_m} + shoulder_behind_m_ * first_ray_);
   shoulder_.step = shoulder_.p - before;
   shoulder_.unseen = torso_.unseen();
-  const double measured_m =
-      std::hypot(params_.shoulder_sigma_m, 0.5 * grid.z_sigma_m(shoulder_.p.z, params_.disparity_sigma_px));
+  const double measured_m = std::hypot(params_.shoulder_sigma_m,
+                                       0.5 * grid.z_sigma_m(shoulder_.p.z, params_.disparity_sigma_px), kLiftDoubt * lift_m);
   const double unseen_s = seconds(shoulder_.unseen);
   hide(shoulder_, measured_m + params_.shoulder_sigma_growth_m_s * unseen_s, lengths_.reach_m(), unseen_s);
   if (!torso_.seen()) return;

@@ -29,6 +29,9 @@ struct TrackedJoint {
   bool seen() const { return unseen == 0; }
 };
 
+/// The joint behind a shoulder's cloth at a place of the grid; none where too little of it has depth.
+std::optional<Vec3> shoulder_at(const Grid& grid, Vec2 at, double depth_m, std::vector<double>& scratch);
+
 class Arm {
  public:
   Arm(const Grid& grid, double frame_s);
@@ -80,6 +83,7 @@ class Arm {
 
   // What is learnt while it is seen (arm_learn.cpp).
   void learn(const Scene& scene, const std::optional<Candidate>& seen);
+  void learn_shoulder(const Grid& grid);
   void learn_body(const Grid& grid);
   void learn_colors(const Grid& grid, bool arm_seen);
   void follow_others(const Grid& grid);
@@ -90,12 +94,16 @@ class Arm {
   double seconds(int frames) const { return frames * frame_s_; }
 
   static constexpr std::size_t kMostOwnOthers = 12;
+  static constexpr double kLearnShoulderS = 1;
 
   Params params_;
   double frame_s_;
   Lengths lengths_;
-  double hand_centre_m_ = 0;  // from the fingertips
-  Vec3 first_upper_;          // direction of the upper arm at the start, in the torso frame
+  double hand_centre_m_ = 0;                       // from the fingertips
+  Vec3 first_upper_;                               // direction of the upper arm at the start, in the torso frame
+  Vec3 first_elbow_, first_shoulder_, first_ray_;  // at the start; the ray has z = 1
+  double shoulder_behind_m_ = 0;                   // the joint, behind where the click read it
+  std::vector<double> shoulder_misses_m_;          // what each frame says of that
   TrackedJoint hand_, elbow_, shoulder_;
   int frame_ = 0;
 
@@ -110,6 +118,7 @@ class Arm {
   Regions skin_regions_, limb_regions_, other_regions_;
   HandFinder hands_;
   std::vector<std::uint8_t> mask_, scratch_;
+  std::vector<double> depths_m_;
 };
 
 }  // namespace duo::arm

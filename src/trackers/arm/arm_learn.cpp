@@ -7,11 +7,30 @@ namespace duo::arm {
 
 void Arm::learn(const Scene& scene, const std::optional<Candidate>& seen) {
   constexpr double kSureScore = 2;
+  learn_shoulder(scene.grid);
   if (seen && seen->score > kSureScore && frame_ % 2 == 0) learn_body(scene.grid);
   learn_colors(scene.grid, seen && seen->score > 0);
   background_.update(scene.grid);
   follow_others(scene.grid);
   renew_patches(scene);
+}
+
+// One frame's depth of plain cloth may be wrong by centimetres, and all frames would inherit what the click read: the median of
+// the first second corrects the shoulder, and with it the upper arm that the clicks gave; then both are kept.
+void Arm::learn_shoulder(const Grid& grid) {
+  constexpr std::size_t kLeastFrames = 10;
+  constexpr double kSameUpper = 0.8;  // cosine: elsewhere the arm covers the shoulder or lifts it
+  constexpr double kMostM = 0.05;
+  if (seconds(frame_) > kLearnShoulderS || !torso_.seen() || !elbow_.seen()) return;
+  if (dot(normalized(elbow_.p - shoulder_.p), torso_.rig_from_torso().rotation * first_upper_) < kSameUpper) return;
+  const auto found = shoulder_at(grid, grid.camera.project(shoulder_.p), params_.shoulder_depth_m, depths_m_);
+  if (!found) return;
+  shoulder_misses_m_.push_back(found->z - shoulder_.p.z + shoulder_behind_m_);
+  if (shoulder_misses_m_.size() < kLeastFrames) return;
+  const auto middle = shoulder_misses_m_.begin() + static_cast<std::ptrdiff_t>(shoulder_misses_m_.size() / 2);
+  std::nth_element(shoulder_misses_m_.begin(), middle, shoulder_misses_m_.end());
+  shoulder_behind_m_ = std::clamp(*middle, -kMostM, kMostM);
+  lengths_.upper_m = norm(first_elbow_ - (first_shoulder_ + shoulder_behind_m_ * first_ray_));
 }
 
 void Arm::learn_body(const Grid& grid) {

@@ -24,24 +24,6 @@ std::optional<Vec3> limb_at(const Grid& grid, Vec2 at, double depth_m) {
   return behind(grid.camera.point(at, *z), depth_m);
 }
 
-/// Median depth of a wide disc of one surface: the cloth of a shoulder may be plain.
-std::optional<Vec3> shoulder_at(const Grid& grid, Vec2 at, double depth_m) {
-  constexpr double kFirstRadius = 5, kRadiusM = 0.075, kSurfaceM = 0.2, kNear = 0.45;
-  const auto first = disc_depth_m(grid, at, kFirstRadius);
-  if (!first) return {};
-  std::vector<double> depths;
-  const int r = static_cast<int>(kRadiusM * grid.camera.focal_px / *first);
-  const int x = static_cast<int>(std::lround(at.x)), y = static_cast<int>(std::lround(at.y));
-  each_around(grid, x, y, r, [&](int i) {
-    const int dx = i % grid.width - x, dy = i / grid.width - y;
-    if (dx * dx + dy * dy <= r * r && grid.known(i) && std::abs(grid.z(i) - *first) < kSurfaceM) depths.push_back(grid.z(i));
-  });
-  if (depths.size() < 5) return {};
-  const auto wanted = depths.begin() + static_cast<std::ptrdiff_t>(kNear * static_cast<double>(depths.size()));
-  std::nth_element(depths.begin(), wanted, depths.end());
-  return behind(grid.camera.point(at, *wanted), depth_m);
-}
-
 Result<void> check_lengths(const Lengths& lengths) {
   constexpr double kShortestM = 0.08, kLongestM = 0.7;
   const auto wrong = [&](double m) { return !(m >= kShortestM && m <= kLongestM); };
@@ -54,12 +36,31 @@ Result<void> check_lengths(const Lengths& lengths) {
 
 }  // namespace
 
+// Median depth of a wide disc of one surface: the cloth of a shoulder may be plain.
+std::optional<Vec3> shoulder_at(const Grid& grid, Vec2 at, double depth_m, std::vector<double>& scratch) {
+  constexpr double kFirstRadius = 5, kRadiusM = 0.075, kSurfaceM = 0.2, kNear = 0.45;
+  const auto first = disc_depth_m(grid, at, kFirstRadius);
+  if (!first) return {};
+  scratch.clear();
+  const int r = static_cast<int>(kRadiusM * grid.camera.focal_px / *first);
+  const int x = static_cast<int>(std::lround(at.x)), y = static_cast<int>(std::lround(at.y));
+  each_around(grid, x, y, r, [&](int i) {
+    const int dx = i % grid.width - x, dy = i / grid.width - y;
+    if (dx * dx + dy * dy <= r * r && grid.known(i) && std::abs(grid.z(i) - *first) < kSurfaceM) scratch.push_back(grid.z(i));
+  });
+  if (scratch.size() < 5) return {};
+  const auto wanted = scratch.begin() + static_cast<std::ptrdiff_t>(kNear * static_cast<double>(scratch.size()));
+  std::nth_element(scratch.begin(), wanted, scratch.end());
+  return behind(grid.camera.point(at, *wanted), depth_m);
+}
+
 Result<void> Arm::start(const Scene& scene, std::span<const Vec2, kArmJoints> clicks_px) {
   const Grid& grid = scene.grid;
+  depths_m_.reserve(static_cast<std::size_t>(grid.size()));
   std::array<Vec2, kArmJoints> at;
   for (std::size_t i = 0; i < at.size(); ++i) at[i] = Pinhole::coarse(clicks_px[i], grid.step);
   const auto hand = limb_at(grid, at[0], params_.hand_depth_m), elbow = limb_at(grid, at[1], params_.elbow_depth_m),
-             shoulder = shoulder_at(grid, at[2], params_.shoulder_depth_m);
+             shoulder = shoulder_at(grid, at[2], params_.shoulder_depth_m, depths_m_);
   if (!hand) return no_depth(Joint::kHand);
   if (!elbow) return no_depth(Joint::kElbow);
   if (!shoulder) return no_depth(Joint::kShoulder);
@@ -69,6 +70,10 @@ Result<void> Arm::start(const Scene& scene, std::span<const Vec2, kArmJoints> cl
   lengths_ = chain().lengths();
   DUO_TRY(check_lengths(lengths_));
   first_upper_ = normalized(elbow_.p - shoulder_.p);
+  first_elbow_ = elbow_.p;
+  first_shoulder_ = shoulder_.p;
+  first_ray_ = (1 / shoulder_.p.z) * shoulder_.p;
+  shoulder_misses_m_.reserve(static_cast<std::size_t>(kLearnShoulderS / frame_s_) + 1);
   torso_.start(shoulder_.p);
   return learn_first(scene, find_person(grid));
 }
