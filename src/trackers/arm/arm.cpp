@@ -131,7 +131,7 @@ void Arm::update_hand(const Grid& grid, const Prediction& predicted, const std::
   hand_.confidence = confidence_of(seen->score);
   hand_.sigma_m = std::sqrt(square(params_.hand_sigma_m) +
                             square(params_.hand_depth_sigmas * grid.z_sigma_m(now.z, params_.disparity_sigma_px)) +
-                            square(params_.hand_lag * norm(step)));
+                            square(params_.hand_lag * norm(step)) + square(params_.hand_cut_sigma_m * seen->hand.cut));
 }
 
 void Arm::update_elbow(const Prediction& predicted, const Observation& seen) {
@@ -151,7 +151,8 @@ void Arm::update_elbow(const Prediction& predicted, const Observation& seen) {
   elbow_.unseen = 0;
   elbow_.state = JointState::kSeen;
   elbow_.confidence = confidence_of(seen.elbow.score);
-  elbow_.sigma_m = std::hypot(params_.elbow_sigma_m, seen.elbow.spread_m);
+  const double cut = seen.arm ? seen.arm->hand.cut : 0;
+  elbow_.sigma_m = std::hypot(params_.elbow_sigma_m, seen.elbow.spread_m, params_.elbow_cut_sigma_m * cut);
 }
 
 void Arm::find_silhouette(const Grid& grid, std::span<const Vec3> rivals) {

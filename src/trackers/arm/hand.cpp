@@ -5,6 +5,30 @@
 
 namespace duo::arm {
 
+namespace {
+
+/// Calls each(cell, place) for some places just beyond the fingertips; cell is -1 outside of the picture.
+template <class Each>
+void each_beyond(const Grid& grid, Vec3 elbow, const HandSeen& hand, Each&& each) {
+  const Vec3 way = normalized(hand.p - elbow), side = normalized(cross(way, hand.p));
+  for (const double beyond_m : {0.02, 0.035, 0.05})
+    for (const double aside_m : {-0.02, 0.0, 0.02}) {
+      const Vec3 p = elbow + (hand.tip_m + beyond_m) * way + aside_m * side;
+      each(grid.cell_of(p), p);
+    }
+}
+
+double cut_beyond(const Grid& grid, Vec3 elbow, const HandSeen& hand) {
+  int cut = 0, all = 0;
+  each_beyond(grid, elbow, hand, [&](int i, Vec3) {
+    ++all;
+    cut += i < 0 || !grid.inside[static_cast<std::size_t>(i)];
+  });
+  return cut / static_cast<double>(all);
+}
+
+}  // namespace
+
 HandFinder::HandFinder(const Grid& grid) {
   far_.reserve(static_cast<std::size_t>(grid.size()));
   depths_m_.reserve(static_cast<std::size_t>(grid.size()));
@@ -85,23 +109,20 @@ std::optional<HandSeen> HandFinder::find(const Grid& grid, const Silhouette& sil
   if (depths_m_.size() < kLeastCells) return {};
   const Vec3 start = (1 / weights) * mean;
   out.p = behind(centre(elbow, start, out.tip_m - centre_m, median_of_depths()), params.hand_depth_m);
+  out.cut = cut_beyond(grid, elbow, out);
   return out;
 }
 
 double covered_beyond(const Grid& grid, const std::vector<std::uint8_t>& front, Vec3 elbow, const HandSeen& hand,
                       const Params& params) {
   constexpr double kNearerM = 0.05;
-  const Vec3 way = normalized(hand.p - elbow), side = normalized(cross(way, hand.p));
   int covered = 0, all = 0;
-  for (const double beyond_m : {0.02, 0.035, 0.05})
-    for (const double aside_m : {-0.02, 0.0, 0.02}) {
-      const Vec3 p = elbow + (hand.tip_m + beyond_m) * way + aside_m * side;
-      const int i = grid.cell_of(p);
-      if (i < 0) continue;
-      ++all;
-      covered += grid.known(i) && front[static_cast<std::size_t>(i)] &&
-                 grid.z(i) < p.z - kNearerM - grid.z_sigma_m(p.z, params.disparity_sigma_px);
-    }
+  each_beyond(grid, elbow, hand, [&](int i, Vec3 p) {
+    if (i < 0) return;
+    ++all;
+    covered += grid.known(i) && front[static_cast<std::size_t>(i)] &&
+               grid.z(i) < p.z - kNearerM - grid.z_sigma_m(p.z, params.disparity_sigma_px);
+  });
   return all > 0 ? covered / static_cast<double>(all) : 0;
 }
 

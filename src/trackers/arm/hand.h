@@ -20,6 +20,7 @@ struct HandSeen {
   Vec3 p;                                         // the hand's centre, inside it
   double tip_m = 0;                               // from the elbow to the fingertips
   double area_m2 = 0, solid_m2 = 0, skin_m2 = 0;  // of the region's last hand_length
+  double cut = 0;                                 // share of the places just beyond the fingertips that no camera shows
 };
 
 class HandFinder {

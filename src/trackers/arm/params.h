@@ -38,8 +38,9 @@ struct Params {
   // Honesty. One sigma of a joint that was measured; hidden ones grow.
   double hand_sigma_m = 0.021, elbow_sigma_m = 0.022, shoulder_sigma_m = 0.018;
   double hand_sigma_growth_m_s = 0.9, elbow_sigma_growth_m_s = 0.45, shoulder_sigma_growth_m_s = 0.6;
-  double hand_depth_sigmas = 0.7;  // a hand is many cells, but their errors agree
-  double hand_lag = 0.15;          // sigma added per metre that the hand moved since the last frame
+  double hand_depth_sigmas = 0.7;                            // a hand is many cells, but their errors agree
+  double hand_cut_sigma_m = 0.07, elbow_cut_sigma_m = 0.05;  // added where the picture's border cuts the hand off
+  double hand_lag = 0.15;                                    // sigma added per metre that the hand moved since the last frame
 };
 
 }  // namespace duo::arm
