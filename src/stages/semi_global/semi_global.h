@@ -83,6 +83,7 @@ class SemiGlobalScratch {
     Image<std::uint8_t> along, back;   // [2][disparity]: path costs along the row and back, this pixel's and those before
     Image<std::uint8_t> totals;        // S of one pixel
     Image<std::uint8_t> best, winner;  // of the right view, padding() columns before x = 0
+    Image<std::uint8_t> beside;        // [2][pixel]: how much more than the winner's S its lower and its higher neighbour have
   };
   int lanes = 0;                             // disparities with those that only fill the last vector
   int stride = 0;                            // lanes + kGap

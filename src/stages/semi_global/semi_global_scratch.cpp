@@ -28,6 +28,7 @@ SemiGlobalScratch::SemiGlobalScratch(Size size, int max_disparity, const SemiGlo
     row.totals = Image<std::uint8_t>({lanes + 2 * kGap, 1});
     row.best = Image<std::uint8_t>({lanes + size.width, 1});
     row.winner = Image<std::uint8_t>({lanes + size.width, 1});
+    row.beside = Image<std::uint8_t>({size.width, 2});
   }
   if (params.upward) upward = Image<std::uint8_t>({size.width * lanes, size.height});
   done = std::make_unique<std::atomic<int>[]>(static_cast<std::size_t>(size.height));

@@ -205,6 +205,7 @@ class Back {
     std::int16_t* out = sweep_.out.right.row(y_);
     const std::uint8_t* winner = row_.winner.row(0) + sweep_.lanes;
     for (int x = 0; x < sweep_.w; ++x) out[x] = winner[x];
+    interpolate();
   }
 
  private:
@@ -218,18 +219,29 @@ class Back {
       hn::StoreMaskBits(d, hn::Eq(hn::Load(d, totals + j), set(least_total)), reinterpret_cast<std::uint8_t*>(&bits));
       lane = bits != 0 ? j + 63 - std::countl_zero(bits) : lane;
     }
-    const int disparity = lanes - 1 - lane;
-    sweep_.out.left.row(y_)[x] = static_cast<std::int16_t>(disparity);
-    int offset = 0;
-    if (disparity > 0 && disparity + 1 < sweep_.in.max_disparity) {
-      const int below = totals[lane + 1] - least_total, beyond = totals[lane - 1] - least_total;
-      const int higher = std::max(below, beyond), height = higher * (below + beyond);
-      const int t = height == 0 ? 0 : (128 * std::abs(below - beyond) * (higher + below + beyond) + height / 2) / height;
-      const int size = (t * (768 - t) + 8192) >> 14;
-      offset = below < beyond ? -size : size;
-    }
-    sweep_.out.fine.row(y_)[x] = static_cast<std::uint16_t>(16 * disparity + offset);
+    sweep_.out.left.row(y_)[x] = static_cast<std::int16_t>(lanes - 1 - lane);
+    row_.beside.row(0)[x] = static_cast<std::uint8_t>(totals[lane + 1] - least_total);
+    row_.beside.row(1)[x] = static_cast<std::uint8_t>(totals[lane - 1] - least_total);
     if (!sweep_.out.margin.empty()) sweep_.out.margin.row(y_)[x] = static_cast<std::uint8_t>(margin(totals, lane, least_total));
+  }
+
+  /// The sub-pixel offsets of a row, without branches, so that the compiler makes vectors of it. Every number is whole and
+  /// below 2^24, and a quotient that is not whole stays more than half a float's step below the next whole number: no rounding
+  /// shows.
+  void interpolate() {
+    const std::int16_t* left = sweep_.out.left.row(y_);
+    const std::uint8_t *lower = row_.beside.row(0), *upper = row_.beside.row(1);
+    std::uint16_t* fine = sweep_.out.fine.row(y_);
+    const int most = sweep_.in.max_disparity - 2;
+    for (int x = 0; x < sweep_.w; ++x) {
+      const int disparity = left[x], below = lower[x], beyond = upper[x];
+      const int higher = std::max(below, beyond), height = higher * (below + beyond);
+      const int slope = 128 * std::abs(below - beyond) * (higher + below + beyond) + height / 2;
+      const int t = static_cast<int>(static_cast<float>(slope) / static_cast<float>(std::max(height, 1)));
+      const int size = (t * (768 - t) + 8192) >> 14;
+      const int offset = below < beyond ? -size : size;
+      fine[x] = static_cast<std::uint16_t>(16 * disparity + (disparity > 0 && disparity <= most ? offset : 0));
+    }
   }
 
   int margin(std::uint8_t* totals, int lane, int least_total) const {
