@@ -21,7 +21,7 @@ namespace {
 constexpr char kFooter[] =
     "LEFT and RIGHT are two videos, or two folders of pictures (or one, with left and right in their names) that pair by "
     "their\n"
-    "numbers. Print a board, glue it to something flat, measure a square, and show it whole to both\n"
+    "numbers. Print a board (duoptic board), glue it to something flat, measure a square, and show it whole to both\n"
     "cameras 15 times or more: near and far, in all corners, tilted 20 to 40 degrees every way, still each time.\n\n"
     "Examples:\n"
     "  duoptic calibrate left.avi right.avi --board chessboard:9x6 --square-mm 30 -o rig.json\n"
@@ -183,6 +183,11 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   calibration.rig.left_name = options.left_name;
   calibration.rig.right_name = options.right_name;
   calibration.rig.date = now_utc();
+  if (app.count("--square-mm") == 0)
+    calibration.warnings.push_back(
+        fmt::format("--square-mm was not given, and squares of {} mm were assumed: measure them, every "
+                    "distance depends on it",
+                    options.square_mm));
   DUO_TRY_ASSIGN(const RigDescription description, describe_rig(calibration.rig, options.near_m));
   DUO_TRY(save_rig(calibration.rig, options.output));
   DUO_TRY(write_calibration_report(calibration, board, description, shown.pair(), report_path(options)));

@@ -88,43 +88,58 @@ FoundBoard find_board(const cv::Mat& gray, const Board& board) {
   return found;
 }
 
+namespace {
+
+/// Width of the step between two neighbouring corners, measured at right angles to their edge, 9 profiles averaged.
+double spread_between_px(const cv::Mat& gray, const BoardCorner& a, const BoardCorner& b, double on_before, double on_behind) {
+  const cv::Point2d along(b.x_px - a.x_px, b.y_px - a.y_px), middle = {(a.x_px + b.x_px) / 2, (a.y_px + b.y_px) / 2};
+  const double length = cv::norm(along), from_px = -length * on_before, to_px = length * on_behind;
+  const cv::Point2d across(-along.y / length, along.x / length);
+  constexpr int kSamples = 65, kMean = 9;
+  cv::Mat map_x(kMean, kSamples, CV_32F), map_y(kMean, kSamples, CV_32F), patch, profile;
+  for (int v = 0; v < kMean; ++v)
+    for (int u = 0; u < kSamples; ++u) {
+      const cv::Point2d p = middle + (from_px + (to_px - from_px) * u / (kSamples - 1)) * across +
+                            (0.5 * (v + 0.5 - kMean / 2.0) / kMean) * along;
+      map_x.at<float>(v, u) = static_cast<float>(p.x);
+      map_y.at<float>(v, u) = static_cast<float>(p.y);
+    }
+  cv::remap(gray, patch, map_x, map_y, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::reduce(patch, profile, 0, cv::REDUCE_AVG, CV_32F);
+  double low = 0, high = 0;
+  cv::minMaxLoc(profile, &low, &high);
+  int between = 0;
+  for (int u = 0; u < kSamples; ++u) {
+    const double value = (profile.at<float>(u) - low) / std::max(1.0, high - low);
+    between += value > 0.25 && value < 0.75;
+  }
+  return (to_px - from_px) * between / (kSamples - 1);
+}
+
+}  // namespace
+
 double edge_spread_px(const cv::Mat& gray, const Board& board, const FoundBoard& found) {
   // On a white square the profile ends before the marker.
   const double on_black = 0.4, on_white = board.kind == Board::Kind::kCharuco ? 0.4 * (1 - board.marker_share) : on_black;
-  std::vector<double> spreads;
-  for (std::size_t i = 1; i < found.corners.size(); ++i) {
-    const BoardCorner &a = found.corners[i - 1], &b = found.corners[i];
-    if (b.id != a.id + 1 || b.id % board.inner_columns() == 0) continue;
-    const cv::Point2d along(b.x_px - a.x_px, b.y_px - a.y_px), middle = {(a.x_px + b.x_px) / 2, (a.y_px + b.y_px) / 2};
-    const double length = cv::norm(along);
-    const bool black_below = (a.id % board.inner_columns() + a.id / board.inner_columns()) % 2 == 0;
-    const double from_px = -length * (black_below ? on_white : on_black), to_px = length * (black_below ? on_black : on_white);
-    const cv::Point2d across(-along.y / length, along.x / length);
-    cv::Mat profile;
-    constexpr int kSamples = 65, kMean = 9;
-    cv::Mat map_x(kMean, kSamples, CV_32F), map_y(kMean, kSamples, CV_32F);
-    for (int v = 0; v < kMean; ++v)
-      for (int u = 0; u < kSamples; ++u) {
-        const cv::Point2d p = middle + (from_px + (to_px - from_px) * u / (kSamples - 1)) * across +
-                              (0.5 * (v + 0.5 - kMean / 2.0) / kMean) * along;
-        map_x.at<float>(v, u) = static_cast<float>(p.x);
-        map_y.at<float>(v, u) = static_cast<float>(p.y);
-      }
-    cv::Mat patch;
-    cv::remap(gray, patch, map_x, map_y, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-    cv::reduce(patch, profile, 0, cv::REDUCE_AVG, CV_32F);
-    double low = 0, high = 0;
-    cv::minMaxLoc(profile, &low, &high);
-    int between = 0;
-    for (int u = 0; u < kSamples; ++u) {
-      const double value = (profile.at<float>(u) - low) / std::max(1.0, high - low);
-      between += value > 0.25 && value < 0.75;
+  const int columns = board.inner_columns();
+  double widest_px = 0;
+  for (const bool down : {false, true}) {  // apart: motion blurs the edges of one direction only
+    std::vector<double> spreads;
+    for (const BoardCorner& a : found.corners) {
+      if (!down && (a.id + 1) % columns == 0) continue;
+      const auto b = std::find_if(found.corners.begin(), found.corners.end(),
+                                  [&](const BoardCorner& c) { return c.id == a.id + (down ? columns : 1); });
+      if (b == found.corners.end()) continue;
+      // The profile runs downwards across an edge along a row, leftwards across one along a column.
+      const bool ends_black = ((a.id % columns + a.id / columns) % 2 == 0) != down;
+      spreads.push_back(spread_between_px(gray, a, *b, ends_black ? on_white : on_black, ends_black ? on_black : on_white));
     }
-    spreads.push_back((to_px - from_px) * between / (kSamples - 1));
+    if (spreads.empty()) continue;
+    const auto middle = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 2);
+    std::nth_element(spreads.begin(), middle, spreads.end());
+    widest_px = std::max(widest_px, *middle);
   }
-  if (spreads.empty()) return 0;
-  std::nth_element(spreads.begin(), spreads.begin() + spreads.size() / 2, spreads.end());
-  return spreads[spreads.size() / 2];
+  return widest_px;
 }
 
 std::string name_any_chessboard(const cv::Mat& gray) {

@@ -43,7 +43,8 @@ cv::Point2d marker_place(const Board& board, int id);
 /// Source  Förstner, Gülch, "A fast operator for detection and precise location of distinct points", 1987
 void refine_corners(const cv::Mat& gray, const Board& board, FoundBoard& found);
 
-/// How wide the edges of the squares are spread: distance from a quarter to three quarters of the step, median over edges.
+/// How wide the edges of the squares are spread: distance from a quarter to three quarters of the step, median over edges
+/// along rows or along columns, whichever is wider.
 double edge_spread_px(const cv::Mat& gray, const Board& board, const FoundBoard& found);
 
 /// Inner corners, columns x rows, of whatever chessboard is seen; "" = none.

@@ -24,6 +24,19 @@ struct Ended {
   std::string out, err;
 };
 
+/// Mean over `width` pixels of a row: a board that moved while the shutter was open.
+Image<Rgb8> smeared(View<const Rgb8> in, int width) {
+  Image<Rgb8> out(in.size());
+  for (int y = 0; y < in.height(); ++y)
+    for (int x = 0; x + width <= in.width(); ++x) {
+      int sum = 0;
+      for (int i = 0; i < width; ++i) sum += in.at(y, x + i).g;
+      const auto mean = static_cast<std::uint8_t>(sum / width);
+      out.at(y, x) = {mean, mean, mean};
+    }
+  return out;
+}
+
 /// Pictures of a board, drawn once for all tests.
 class CalibrateTool : public testing::Test {
  protected:
@@ -88,6 +101,7 @@ TEST_F(CalibrateTool, MakesARigAndItsReport) {
   ASSERT_TRUE(rig) << rig.error().what;
   EXPECT_EQ(rig->left_name, "L1");
   EXPECT_NEAR(rig->baseline_m(), test::crooked_rig().baseline_m(), 3 * rig->uncertainty->baseline_m);
+  EXPECT_NE(json["warnings"].dump().find("--square-mm was not given"), std::string::npos) << json["warnings"];
   const std::string report = test::bytes_of(at("rig_report.html"));
   for (const char* part : {"<!doctype html>", "only 6 views", "data:image/jpeg;base64,", "depth at 1.5 m", "</html>"})
     EXPECT_NE(report.find(part), std::string::npos) << part;
@@ -131,6 +145,11 @@ TEST_F(CalibrateTool, SaysInOneLineWhatIsWrong) {
   }
   write("mirrored", left, [&](int i) { return View<const Rgb8>(mirrored[static_cast<std::size_t>(i)]); });
   expect_failure("mirrored" + board, "mirrored");
+  std::vector<Image<Rgb8>> blurred;
+  for (int i = 0; i < kViews; ++i) blurred.push_back(smeared(left(i), 9));
+  write(
+      "blurred", [&](int i) { return View<const Rgb8>(blurred[static_cast<std::size_t>(i)]); }, right);
+  expect_failure("blurred" + board, "blurred");
   write("few", left, right, 3);
   expect_failure("few" + board, "too few views: 3 of 3");
   write(
