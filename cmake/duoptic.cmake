@@ -39,7 +39,7 @@ function(duoptic_test name source)
   target_link_libraries(${target} PRIVATE duoptic_test_main)
   target_precompile_headers(${target} REUSE_FROM duoptic_test_main)
   set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)  # one file
-  add_test(NAME ${name} COMMAND ${target})
+  add_test(NAME ${name} COMMAND ${target} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})  # ../shared/data is the default data
   set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600)
 endfunction()
 

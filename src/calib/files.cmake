@@ -20,6 +20,5 @@ duoptic_test(calib/rig_health ${dir}/rig_health_test.cpp)
 duoptic_test(calib/scene_clips ${dir}/scene_clips_test.cpp)
 if(DUO_TESTS)
   # They read tests/data and the test data beside the project.
-  set_tests_properties(calib/board calib/board_sets PROPERTIES WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   target_link_libraries(calib_rig_files_test PRIVATE opencv::core)  # reads what we write for it
 endif()
