@@ -51,7 +51,8 @@ void ArmOptions::add_to(CLI::App& app) {
       ->capture_default_str();
 }
 
-Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, const Rig& rig, const ArmOptions& options) {
+Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, const Rig& rig, const ArmOptions& options,
+                            std::int64_t first) {
   ArmRun run;
   DUO_TRY_ASSIGN(auto pairs, open_pairs(left, right));
   DUO_TRY_ASSIGN(run.engine_, make_engine(options.engine.engine, options.engine.threads));
@@ -65,8 +66,6 @@ Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, c
   DUO_TRY_ASSIGN(const double frame_s, frame_interval_s(left));
   DUO_TRY(run.tracker_->prepare({rig, *run.engine_->rectified(), frame_s}));
 
-  run.pairs_ = std::make_unique<ReadAhead>(std::move(pairs));
-
   run.recording_.sources = {left};
   if (!right.empty()) run.recording_.sources.push_back(right);
   run.recording_.engine = run.engine_->name();
@@ -77,34 +76,22 @@ Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, c
   run.recording_.rectified = *run.engine_->rectified();
   run.recording_.size = setup.size;
   run.recording_.frame_s = frame_s;
+  run.frames_ = std::make_unique<FrameAhead>(std::move(pairs), *run.engine_, first);
   return run;
-}
-
-Result<Next> ArmRun::read() {
-  DUO_TRY_ASSIGN(const Next next, pairs_->next(pair_));
-  if (next == Next::kPicture && pair_.sequence == 0) start_ns_ = pair_.left.t_ns;
-  return next;
-}
-
-const Frame& ArmRun::to_frame() {
-  times_.engine_ms = timed([&] {
-                       engine_->submit(pair_);
-                       frame_ = &engine_->collect();
-                     }).wall_ms;
-  return *frame_;
 }
 
 const std::vector<ArmPose>& ArmRun::track() {
   const std::vector<ArmPose>* arms = nullptr;
-  times_.tracker_ms = timed([&] { arms = &tracker_->track(*frame_); }).wall_ms;
+  tracker_ms_ = timed([&] { arms = &tracker_->track(frame()); }).wall_ms;
   return *arms;
 }
 
 TrackedFrame ArmRun::tracked(const std::vector<ArmPose>& arms) const {
-  return {static_cast<std::int64_t>(pair_.sequence),
-          static_cast<double>(pair_.left.t_ns - start_ns_) * 1e-9,
-          pair_.left,
-          *frame_,
+  const Pair& pair = frames_->last().pair;
+  return {static_cast<std::int64_t>(pair.sequence),
+          static_cast<double>(pair.left.t_ns - frames_->start_ns()) * 1e-9,
+          pair.left,
+          frame(),
           arms,
           {}};
 }

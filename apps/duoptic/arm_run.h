@@ -9,7 +9,7 @@
 #include "duoptic/sink.h"
 #include "duoptic/source.h"
 #include "duoptic/tracker.h"
-#include "read_ahead.h"
+#include "frame_ahead.h"
 
 namespace duo::app {
 
@@ -21,36 +21,34 @@ struct ArmOptions {
   void add_to(CLI::App& app);
 };
 
-/// Reads pairs, and makes frames and arms of them; read(), then to_frame(), then select() or track().
+/// Pairs, frames and arms of a clip: next(), then select() or track(). The next frame is made while this one is tracked.
 class ArmRun {
  public:
   static constexpr double kNearest_m = 0.5;
 
   /// Errors  those of open_pairs(), Engine::prepare() and Tracker::prepare()
-  static Result<ArmRun> open(const std::string& left, const std::string& right, const Rig& rig, const ArmOptions& options);
+  ///         Pairs before number `first` are passed over.
+  static Result<ArmRun> open(const std::string& left, const std::string& right, const Rig& rig, const ArmOptions& options,
+                             std::int64_t first = 0);
 
-  /// Takes the next pair from the files.
-  Result<Next> read();
-  const Frame& to_frame();
-  Result<void> select(const std::vector<ArmSelection>& arms) { return tracker_->select(*frame_, arms); }
+  Result<Next> next() { return frames_->next(); }
+  const Frame& frame() const { return *frames_->last().frame; }
+  Result<void> select(const std::vector<ArmSelection>& arms) { return tracker_->select(frame(), arms); }
   const std::vector<ArmPose>& track();
 
-  const ReadAhead& pairs() const { return *pairs_; }
+  FrameAhead& frames() const { return *frames_; }
   const Recording& recording() const { return recording_; }
   /// The last pair and its frame, as sinks take them.
   TrackedFrame tracked(const std::vector<ArmPose>& arms) const;
-  TrackTimes times() const { return times_; }  // of the last frame
+  TrackTimes times() const { return {frames_->last().engine_ms, tracker_ms_}; }  // of the last frame
 
  private:
   ArmRun() = default;
-  std::unique_ptr<ReadAhead> pairs_;
   std::unique_ptr<Engine> engine_;
+  std::unique_ptr<FrameAhead> frames_;  // after the engine, which it uses to its end
   std::unique_ptr<Tracker> tracker_;
   Recording recording_;
-  Pair pair_;
-  const Frame* frame_ = nullptr;
-  TimeNs start_ns_ = 0;
-  TrackTimes times_;
+  double tracker_ms_ = 0;
 };
 
 }  // namespace duo::app

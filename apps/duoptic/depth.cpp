@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "duoptic/calibrate.h"
 #include "duoptic/source.h"
 #include "frame_files.h"
 #include "progress.h"
@@ -22,11 +23,13 @@ constexpr char kFooter[] =
     "Examples:\n"
     "  duoptic depth left.png right.png --max-disparity 64 -o out          a rectified pair\n"
     "  duoptic depth left.avi right.avi --rig rig.json --every 10 -o out   raw webcam videos, every tenth frame\n"
+    "  duoptic depth left.avi right.avi --rig rig.json --near 0.5 -o out   everything farther than half a metre\n"
     "  duoptic depth both.png --preset thesis                              both views side by side in one file";
 
 struct Options {
   std::string left, right, rig, folder = "duoptic_out";
   int max_disparity = 128;
+  double near_m = 0;  // 0: max_disparity says how far to search
   std::int64_t every = 1;
   bool confidence = false, json = false, quiet = false;
   EngineOptions engine;
@@ -68,19 +71,19 @@ Result<Summary> process(PairSource& pairs, Engine& engine, const Options& option
   return summary;
 }
 
-void print(const Summary& summary, const Engine& engine, const Options& options, Size size) {
+void print(const Summary& summary, const Engine& engine, const Options& options, const Setup& setup) {
   const double frames = static_cast<double>(summary.ms.size()), ms = median(summary.ms);
   const double percent = frames > 0 ? 100 * summary.coverage_sum / frames : 0;
   if (options.json) {
     const nlohmann::json out = {{"frames", summary.ms.size()},
                                 {"pairs_read", summary.read},
-                                {"width", size.width},
-                                {"height", size.height},
+                                {"width", setup.size.width},
+                                {"height", setup.size.height},
                                 {"engine", engine.name()},
                                 {"threads", options.engine.threads},
                                 {"matcher", options.engine.matcher},
                                 {"preset", options.engine.preset},
-                                {"max_disparity_px", options.max_disparity},
+                                {"max_disparity_px", setup.max_disparity},
                                 {"median_ms", ms},
                                 {"coverage_percent", percent},
                                 {"cut", summary.end == Next::kCut},
@@ -90,8 +93,8 @@ void print(const Summary& summary, const Engine& engine, const Options& options,
   } else if (!options.quiet) {
     fmt::print(
         "{} frame{} of {}x{}, {:.1f} ms each ({}, {}, {} threads), {:.0f} % of the pixels have a disparity; written to {}\n",
-        summary.ms.size(), summary.ms.size() == 1 ? "" : "s", size.width, size.height, ms, engine.name(), options.engine.preset,
-        options.engine.threads, percent, options.folder);
+        summary.ms.size(), summary.ms.size() == 1 ? "" : "s", setup.size.width, setup.size.height, ms, engine.name(),
+        options.engine.preset, options.engine.threads, percent, options.folder);
   }
 }
 
@@ -102,13 +105,17 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   setup.max_disparity = options.max_disparity;
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(setup.rig, load_rig(options.rig));
+    if (options.near_m > 0) {
+      DUO_TRY_ASSIGN(const RigDescription can, describe_rig(*setup.rig, options.near_m));
+      setup.max_disparity = can.max_disparity;
+    }
     setup.wants = {.color = true, .depth = true};
   }
   setup.wants.confidence = options.confidence;
   DUO_TRY_ASSIGN(const auto engine, make_engine(options.engine.engine, options.engine.threads));
   DUO_TRY(engine->prepare(setup));
   DUO_TRY_ASSIGN(const Summary summary, process(*pairs, *engine, options, app));
-  print(summary, *engine, options, setup.size);
+  print(summary, *engine, options, setup);
   if (!summary.warning.empty()) say(app, "warning: " + summary.warning);
   return summary.end == Next::kCut ? Exit::kCut : Exit::kOk;
 }
@@ -120,19 +127,25 @@ Command add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   sub->add_option("LEFT", options->left, "Picture or video of the left camera, or of both side by side")->required();
   sub->add_option("RIGHT", options->right, "Picture or video of the right camera");
-  sub->add_option("--rig", options->rig,
-                  "Calibration (our JSON, OpenCV's YAML or JSON); without it the pair is taken as rectified");
-  sub->add_option("--max-disparity", options->max_disparity, "Searches 0 .. N-1 px")
-      ->type_name("N")
-      ->check(CLI::Range(1, Engine::kMaxDisparity))
-      ->capture_default_str();
+  CLI::Option* rig = sub->add_option(
+      "--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); without it the pair is taken as rectified");
+  CLI::Option* most = sub->add_option("--max-disparity", options->max_disparity, "Searches 0 .. N-1 px")
+                          ->type_name("N")
+                          ->check(CLI::Range(1, Engine::kMaxDisparity))
+                          ->capture_default_str();
+  sub->add_option("--near", options->near_m, "Searches as far as something at this distance needs, by the rig")
+      ->type_name("METRES")
+      ->check(CLI::PositiveNumber)
+      ->needs(rig)
+      ->excludes(most);
   sub->add_option("-o,--output", options->folder, "Folder for the results")->type_name("DIR")->capture_default_str();
   sub->add_option("--every", options->every, "Of a video, only every N-th frame")
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
       ->capture_default_str();
   options->engine.add_to(*sub);
-  sub->add_flag("--confidence", options->confidence, "Write confidence.png, too: 1 doubtful .. 255 sure, 0 = unknown (matcher sgm)");
+  sub->add_flag("--confidence", options->confidence,
+                "Write confidence.png, too: 1 doubtful .. 255 sure, 0 = unknown (matcher sgm)");
   sub->add_flag("--json", options->json, "Print the summary as JSON");
   sub->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
   sub->footer(kFooter);

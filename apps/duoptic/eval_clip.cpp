@@ -58,43 +58,42 @@ JointSample sample(const JointTruth& truth, const Keypoint& found, const Mat3& r
 
 Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, const Rig& rig, const ArmOptions& options,
                              double jitter_px, const std::string& video) {
-  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open((folder / "left.avi").string(), (folder / "right.avi").string(), rig, options));
-  const Rectified& rectified = run.recording().rectified;
   ClipScore score{truth.name, options.tracker_preset, truth.first_visible(), 0, 0, {}, {}, {}};
+  const std::string left = (folder / "left.avi").string(), right = (folder / "right.avi").string();
+  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(left, right, rig, options, score.first));
+  const Rectified& rectified = run.recording().rectified;
   std::unique_ptr<Sink> sink;
   if (!video.empty()) {
     DUO_TRY_ASSIGN(sink, make_panel_video(video, run.recording(), score.note));
   }
   std::array<std::vector<JointSample>, kArmJoints> samples;
   DepthTally depth;
-  double busy_ms = 0;  // without reading and scoring the truth
-  for (std::int64_t i = 0; i < static_cast<std::int64_t>(truth.frames.size()); ++i) {
+  double busy_ms = 0;  // without scoring, during which nothing goes on in the background
+  for (std::int64_t i = score.first; i < static_cast<std::int64_t>(truth.frames.size()); ++i) {
     const ArmTruth& joints = truth.frames[static_cast<std::size_t>(i)];
     Result<Next> next = Next::kEnd;
-    const Frame* frame = nullptr;
     const std::vector<ArmPose>* arms = nullptr;
     Result<void> selected;
     busy_ms += timed([&] {
-                 next = run.read();
-                 if (!next || *next != Next::kPicture || i < score.first) return;
-                 frame = &run.to_frame();
+                 next = run.next();
+                 if (!next || *next != Next::kPicture) return;
                  if (i == score.first) selected = run.select({clicks(joints, jitter_px)});
                  if (selected) arms = &run.track();
+                 run.frames().wait();
                }).wall_ms;
     if (!next) return next.error();
     if (!selected) return selected.error();
     if (*next != Next::kPicture)
       return Error{ErrorCode::kBadInput, fmt::format("cannot evaluate {}: its videos end before frame {} of {} in truth.json",
                                                      folder.string(), i, truth.frames.size())};
-    if (arms == nullptr) continue;
     for (std::size_t j = 0; j < kArmJoints; ++j)
       samples[j].push_back(sample(joints[j], arms->front().joints[j], rectified.rig_from_left));
     DUO_TRY_ASSIGN(const DepthTruth depth_truth, load_depth(folder, i));
-    depth.add(*frame, rectified, truth.rig.left, depth_truth);
+    depth.add(run.frame(), rectified, truth.rig.left, depth_truth);
     if (sink) DUO_TRY(sink->write(run.tracked(*arms)));
     ++score.frames;
   }
-  score.fps = 1000 * static_cast<double>(score.first + score.frames) / busy_ms;
+  score.fps = 1000 * static_cast<double>(score.frames) / busy_ms;
   for (std::size_t j = 0; j < kArmJoints; ++j) score.joints[j] = score_joint(samples[j]);
   score.depth = depth.score();
   if (sink) DUO_TRY(sink->finish());

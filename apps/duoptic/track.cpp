@@ -76,15 +76,13 @@ std::vector<ArmSelection> selections(const Options& options) {
   return arms;
 }
 
-/// Reads on to the pair with this number.
-Result<void> go_to(ArmRun& run, std::int64_t number, const std::string& left) {
-  for (std::int64_t read = 0; read <= number; ++read) {
-    DUO_TRY_ASSIGN(const Next next, run.read());
-    if (next != Next::kPicture)
-      return Error{ErrorCode::kBadInput, fmt::format("cannot select at frame {}: {} gives {} pair{}, numbered from 0", number,
-                                                     left, read, read == 1 ? "" : "s")};
-  }
-  return {};
+/// The frame in which joints are selected.
+Result<void> first_frame(ArmRun& run, std::int64_t number, const std::string& left) {
+  DUO_TRY_ASSIGN(const Next next, run.next());
+  if (next == Next::kPicture) return {};
+  const std::int64_t read = run.frames().read();
+  return Error{ErrorCode::kBadInput, fmt::format("cannot select at frame {}: {} gives {} pair{}, numbered from 0", number, left,
+                                                 read, read == 1 ? "" : "s")};
 }
 
 using Sinks = std::vector<std::unique_ptr<Sink>>;
@@ -107,13 +105,12 @@ struct Summary {
   Next end = Next::kEnd;
 };
 
-/// Tracks from the pair that was read last to the end of the files.
+/// Tracks from the first frame to the end of the files.
 Result<Summary> track_all(ArmRun& run, const std::vector<ArmSelection>& arms, const Options& options, const CLI::App& app) {
-  run.to_frame();
   DUO_TRY(run.select(arms));
   DUO_TRY_ASSIGN(const Sinks sinks, make_sinks(options, run.recording(), app));
   Summary summary;
-  Progress progress(app, run.pairs().count(), options.quiet);
+  Progress progress(app, run.frames().count(), options.quiet);
   while (true) {
     TrackedFrame frame = run.tracked(run.track());
     if (options.stats) frame.times = run.times();
@@ -121,9 +118,8 @@ Result<Summary> track_all(ArmRun& run, const std::vector<ArmSelection>& arms, co
     summary.engine_ms.push_back(run.times().engine_ms);
     summary.tracker_ms.push_back(run.times().tracker_ms);
     progress.frame(frame.number + 1);
-    DUO_TRY_ASSIGN(summary.end, run.read());
+    DUO_TRY_ASSIGN(summary.end, run.next());
     if (summary.end != Next::kPicture) break;
-    run.to_frame();
   }
   for (const auto& sink : sinks) DUO_TRY(sink->finish());
   return summary;
@@ -141,8 +137,8 @@ std::string text_of(const Summary& summary, double seconds, const ArmRun& run, c
 Result<Exit> run(const Options& options, const CLI::App& app) {
   const std::vector<ArmSelection> arms = selections(options);
   DUO_TRY_ASSIGN(const Rig rig, load_rig(options.rig));
-  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(options.left, options.right, rig, options.arm));
-  DUO_TRY(go_to(run, options.at_frame, options.left));
+  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(options.left, options.right, rig, options.arm, options.at_frame));
+  DUO_TRY(first_frame(run, options.at_frame, options.left));
   Result<Summary> summary = Summary{};
   const Times times = timed([&] { summary = track_all(run, arms, options, app); });
   if (!summary) return summary.error();
@@ -151,7 +147,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
     say(app, text_of(*summary, times.wall_ms / 1000, run, options));
   else if (!options.quiet && !options.output.empty())
     fmt::print("{}\n", text_of(*summary, times.wall_ms / 1000, run, options));
-  if (const std::string warning = run.pairs().warning(); !warning.empty()) say(app, "warning: " + warning);
+  if (const std::string warning = run.frames().warning(); !warning.empty()) say(app, "warning: " + warning);
   return summary->end == Next::kCut ? Exit::kCut : Exit::kOk;
 }
 

@@ -54,7 +54,8 @@ class Engine {
   virtual Result<void> prepare(const Setup& setup) = 0;
   /// Starts work on a pair of the size given to prepare(); the pair must live until collect() returns.
   virtual void submit(const Pair& pair) = 0;
-  /// The finished frame; it stays valid until the next submit().
+  /// The finished frame. It stays as it is until the submit() after the next: what comes after may work on it meanwhile, in
+  /// another thread.
   virtual const Frame& collect() = 0;
   /// The geometry of the frames; empty before prepare() and without a rig.
   virtual const std::optional<Rectified>& rectified() const = 0;

@@ -19,6 +19,5 @@ duoptic_test(calib/rig_files ${dir}/rig_files_test.cpp)
 duoptic_test(calib/rig_health ${dir}/rig_health_test.cpp)
 duoptic_test(calib/scene_clips ${dir}/scene_clips_test.cpp)
 if(DUO_TESTS)
-  # They read tests/data and the test data beside the project.
   target_link_libraries(calib_rig_files_test PRIVATE opencv::core)  # reads what we write for it
 endif()

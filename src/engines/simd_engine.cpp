@@ -1,6 +1,7 @@
 // The fast CPU engine: Highway stages on a pool of threads.
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <variant>
 
@@ -30,7 +31,7 @@ class SimdEngine final : public Engine {
 
   Result<void> prepare(const Setup& setup) override {
     DUO_TRY_ASSIGN(prepared_, prepare_setup(setup));
-    frame_ = make_frame(prepared_);
+    for (Frame& frame : frames_) frame = make_frame(prepared_);
     if (const auto* pyramid = std::get_if<PyramidParams>(&prepared_.matcher))
       matcher_.emplace<simd::Pyramid>(pool_, *pyramid, match_setup(prepared_));
     else
@@ -48,30 +49,32 @@ class SimdEngine final : public Engine {
     DUO_CHECK(matcher_.index() != 0);
     DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
     const Setup& setup = prepared_.setup;
-    frame_.sequence = pair.sequence;
-    frame_.t_ns = pair.left.t_ns;
-    timer_.start(frame_.stages, setup.time_stages);
+    current_ ^= 1;
+    Frame& frame = frames_[current_];
+    frame.sequence = pair.sequence;
+    frame.t_ns = pair.left.t_ns;
+    timer_.start(frame.stages, setup.time_stages);
 
     const auto* maps = prepared_.rectification ? &*prepared_.rectification : nullptr;
-    prepare_view(pair.left, maps ? &maps->left : nullptr, frame_.left, frame_.left_inside);
-    prepare_view(pair.right, maps ? &maps->right : nullptr, frame_.right, frame_.right_inside);
+    prepare_view(pair.left, maps ? &maps->left : nullptr, frame.left, frame.left_inside);
+    prepare_view(pair.right, maps ? &maps->right : nullptr, frame.right, frame.right_inside);
 
-    Disparity& disparity = frame_.disparity;
-    const GrayPair gray{frame_.left, frame_.right, frame_.left_inside, frame_.right_inside};
+    Disparity& disparity = frame.disparity;
+    const GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside};
     if (auto* pyramid = std::get_if<simd::Pyramid>(&matcher_))
       pyramid->match(gray, disparity.d_q4, timer_);
     else
-      std::get<simd::Sgm>(matcher_).match(gray, {disparity.d_q4, frame_.confidence}, timer_);
+      std::get<simd::Sgm>(matcher_).match(gray, {disparity.d_q4, frame.confidence}, timer_);
     simd::mark_measured(pool_, disparity.d_q4, disparity.origin);
-    if (setup.fill) fill(disparity);
+    if (setup.fill) fill(frame);
     timer_.stage("fill");
-    if (setup.wants.depth) simd::depth(pool_, disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame_.depth_mm);
+    if (setup.wants.depth) simd::depth(pool_, disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
     timer_.stage("depth");
-    if (setup.wants.color) prepare_color(pair.left, maps);
+    if (setup.wants.color) prepare_color(pair.left, maps, frame.color);
     timer_.stage("color");
   }
 
-  const Frame& collect() override { return frame_; }
+  const Frame& collect() override { return frames_[current_]; }
 
  private:
   /// Raw colour to what the matcher sees. Denoising comes before resampling: only there is noise independent from pixel to
@@ -97,22 +100,23 @@ class SimdEngine final : public Engine {
   }
 
   /// What was filled takes the disparity of those filled or measured pixels around it that look like it.
-  void fill(Disparity& disparity) {
+  void fill(Frame& frame) {
+    Disparity& disparity = frame.disparity;
     simd::fill(pool_, disparity.d_q4, disparity.origin);
     disparity.d_q4.swap(unsmoothed_);
-    simd::weighted_median(pool_, {unsmoothed_, frame_.left, disparity.origin}, *smooth_scratch_, disparity.d_q4);
+    simd::weighted_median(pool_, {unsmoothed_, frame.left, disparity.origin}, *smooth_scratch_, disparity.d_q4);
   }
 
-  void prepare_color(const Picture& picture, const Rectification* maps) {
-    if (maps != nullptr) return simd::rectify(pool_, picture.pixels, maps->left, frame_.color);
-    for (int y = 0; y < picture.pixels.height(); ++y)
-      std::copy_n(picture.pixels.row(y), picture.pixels.width(), frame_.color.row(y));
+  void prepare_color(const Picture& picture, const Rectification* maps, Image<Rgb8>& out) {
+    if (maps != nullptr) return simd::rectify(pool_, picture.pixels, maps->left, out);
+    for (int y = 0; y < picture.pixels.height(); ++y) std::copy_n(picture.pixels.row(y), picture.pixels.width(), out.row(y));
   }
 
   Pool pool_;
   Prepared prepared_;
   std::variant<std::monostate, simd::Pyramid, simd::Sgm> matcher_;
-  Frame frame_;
+  std::array<Frame, 2> frames_;  // the last one stays as it is while the next is made
+  unsigned current_ = 0;
   std::optional<simd::WeightedMedianScratch> smooth_scratch_;
   Image<std::uint16_t> unsmoothed_;  // disparities just filled
   Image<std::uint8_t> now_, next_;   // one view on its way through the denoising

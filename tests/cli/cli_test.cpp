@@ -151,6 +151,21 @@ TEST_F(Cli, BadPictures) {
   expect_failure("depth . right.png -o out", kInput, "not a file");
 }
 
+TEST_F(Cli, NearSaysHowFarToSearch) {
+  const auto searched = [&](const char* near) {
+    const Ended ended = run(std::string("depth left.png right.png --rig rig.json -o near --json --near ") + near);
+    EXPECT_EQ(ended.exit, 0) << ended.err;
+    return nlohmann::json::parse(ended.out, nullptr, false)["max_disparity_px"].get<int>();
+  };
+  const int half = searched("0.5"), one = searched("1");
+  EXPECT_NEAR(half - 1, 2 * (one - 1), 2);  // one more than the disparity there, rounded up
+  const std::string pair = "depth left.png right.png -o out ";
+  expect_failure(pair + "--near 1", kUsage, "--rig");
+  expect_failure(pair + "--rig rig.json --near 1 --max-disparity 32", kUsage, "--max-disparity");
+  expect_failure(pair + "--rig rig.json --near 0", kUsage, "--near");
+  expect_failure(pair + "--rig rig.json --near 0.01", kInput, "256 disparities");
+}
+
 TEST_F(Cli, BadOptions) {
   const std::string pair = "depth left.png right.png -o out ";
   for (const char* n : {"0", "-3", "2049", "99999999999999999999", "many"})
