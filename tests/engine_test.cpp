@@ -87,6 +87,28 @@ TEST(Engine, AllocatesNothingAfterTheFirstFrame) {
   EXPECT_GT(test::allocations - before, 0) << "the counter itself works";
 }
 
+// A frame that was collected may be worked on while the next pair is; the one after that may take its place.
+TEST(Engine, AFrameStaysWhileTheNextIsMade) {
+  SyntheticSetup synthetic;
+  synthetic.size = {160, 120};
+  const SyntheticPair scene = render_synthetic(synthetic, 2);
+  Pair blank;
+  blank.left.pixels = Image<Rgb8>(synthetic.size);
+  blank.right.pixels = Image<Rgb8>(synthetic.size);
+  for (const char* name : {"ref", "simd"}) {
+    const auto engine = prepared(name, 1, raw_setup(scene, kChoices[0]));
+    const Frame& first = run(*engine, scene.pair);
+    const Image<std::uint8_t> left = first.left.clone(), right = first.right.clone();
+    const Image<std::uint16_t> d_q4 = first.disparity.d_q4.clone(), depth_mm = first.depth_mm.clone();
+    const Frame& second = run(*engine, blank);
+    EXPECT_NE(&first, &second);
+    test::expect_same<std::uint8_t>(left, first.left, std::string(name) + " left");
+    test::expect_same<std::uint8_t>(right, first.right, std::string(name) + " right");
+    test::expect_same<std::uint16_t>(d_q4, first.disparity.d_q4, std::string(name) + " disparity");
+    test::expect_same<std::uint16_t>(depth_mm, first.depth_mm, std::string(name) + " depth");
+  }
+}
+
 struct Score {
   double bad = 0, covered = 0;
 };
@@ -106,13 +128,19 @@ Score score(const SyntheticPair& scene, const Disparity& disparity) {
   return {bad / seen, known / seen};
 }
 
-TEST(Engine, MeetsTheTruthOfTheSyntheticRoom) {
+/// The synthetic room, rectified as drawn, and the set-up for its pictures.
+std::pair<SyntheticPair, duo::Setup> ideal_room() {
   SyntheticSetup synthetic;
   synthetic.ideal = true;
-  const SyntheticPair scene = render_synthetic(synthetic, 2);
   duo::Setup setup;
   setup.size = synthetic.size;
   setup.max_disparity = 96;
+  return {render_synthetic(synthetic, 2), setup};
+}
+
+TEST(Engine, MeetsTheTruthOfTheSyntheticRoom) {
+  const auto [scene, asked] = ideal_room();
+  duo::Setup setup = asked;
   Score scores[std::size(kChoices)];
   for (std::size_t i = 0; i < std::size(kChoices); ++i) {
     setup.matcher = kChoices[i].matcher;
@@ -135,12 +163,8 @@ TEST(Engine, MeetsTheTruthOfTheSyntheticRoom) {
 // The surer the pixels, the smaller their error: over ten groups of equal size, from doubtful to sure, in a room with webcam
 // noise.
 TEST(Engine, ConfidencePredictsError) {
-  SyntheticSetup synthetic;
-  synthetic.ideal = true;
-  const SyntheticPair scene = render_synthetic(synthetic, 2);
-  duo::Setup setup;
-  setup.size = synthetic.size;
-  setup.max_disparity = 96;
+  const auto [scene, asked] = ideal_room();
+  duo::Setup setup = asked;
   setup.wants.confidence = true;
   const auto engine = prepared("simd", 2, setup);
   const Frame& frame = run(*engine, scene.pair);

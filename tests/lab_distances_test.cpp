@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <vector>
 
 #include "duoptic/engine.h"
 #include "duoptic/source.h"
+#include "tests/data.h"
 
 namespace duo {
 namespace {
@@ -35,8 +35,7 @@ constexpr Torso kTorsos[] = {
 class LabDistances : public testing::Test {
  protected:
   void SetUp() override {
-    const char* data = std::getenv("DUOPTIC_DATA");
-    folder_ = fs::path(data ? data : "../shared/data") / "sequences" / "persons_lab_1080p";
+    folder_ = test::data_folder() / "sequences" / "persons_lab_1080p";
     if (!fs::exists(folder_)) GTEST_SKIP() << "skipped: no data";
   }
   /// Median disparity of the torso in each pair of its folder, pixels.

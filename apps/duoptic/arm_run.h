@@ -26,8 +26,8 @@ class ArmRun {
  public:
   static constexpr double kNearest_m = 0.5;
 
+  /// Pairs before number `first` are passed over.
   /// Errors  those of open_pairs(), Engine::prepare() and Tracker::prepare()
-  ///         Pairs before number `first` are passed over.
   static Result<ArmRun> open(const std::string& left, const std::string& right, const Rig& rig, const ArmOptions& options,
                              std::int64_t first = 0);
 

@@ -2,24 +2,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "calib/rectification.h"
 #include "duoptic/calibrate.h"
 #include "duoptic/source.h"
+#include "tests/data.h"
 #include "tests/turned_rig.h"
 
 namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path data_folder() {
-  const char* data = std::getenv("DUOPTIC_DATA");
-  return data ? data : "../shared/data";
-}
 
 /// Calibrates from leftNN.jpg and rightNN.jpg (`separator` before the number), every `step`-th pair.
 Result<Calibration> calibrated(const fs::path& folder, const std::string& separator, double square_m, int step = 1) {
@@ -83,7 +78,7 @@ std::pair<double, double> point_errors_m(const Rig& found, const Rig& truth, dou
 class RenderedBoards : public testing::TestWithParam<const char*> {};
 
 TEST_P(RenderedBoards, GiveTheTrueRigAsSurelyAsTheySay) {
-  const fs::path folder = data_folder() / "sequences" / GetParam();
+  const fs::path folder = test::data_folder() / "sequences" / GetParam();
   if (!fs::exists(folder)) GTEST_SKIP() << "skipped: no data";
   const auto truth = load_rig(folder / "calibration_truth.yml");
   ASSERT_TRUE(truth) << truth.error().what;
@@ -127,7 +122,7 @@ struct RealSet {
 class RealBoards : public testing::TestWithParam<RealSet> {};
 
 TEST_P(RealBoards, FitAsWellAsOpenCvFitsThem) {
-  const fs::path folder = data_folder() / "calibration" / GetParam().name;
+  const fs::path folder = test::data_folder() / "calibration" / GetParam().name;
   if (!fs::exists(folder)) GTEST_SKIP() << "skipped: no data";
   const auto result = calibrated(folder, "", GetParam().square_m);
   ASSERT_TRUE(result) << result.error().what;
@@ -139,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(Sets, RealBoards,
                          testing::Values(RealSet{"opencv_640x480", 0.025, 0.22}, RealSet{"webcam_640x360", 0.02423, 0.25}));
 
 TEST(RealBoards, OfACameraThatRefocusedAreRefused) {
-  const fs::path folder = data_folder() / "calibration" / "person_board_1080p";
+  const fs::path folder = test::data_folder() / "calibration" / "person_board_1080p";
   if (!fs::exists(folder)) GTEST_SKIP() << "skipped: no data";
   const auto result = calibrated(folder, "", 0.025, 2);
   ASSERT_FALSE(result);

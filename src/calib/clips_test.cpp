@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "calib/rectification.h"
+#include "tests/data.h"
 
 namespace duo {
 namespace {
@@ -17,8 +17,7 @@ namespace fs = std::filesystem;
 class Clips : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    const char* data = std::getenv("DUOPTIC_DATA");
-    folder_ = fs::path(data ? data : "../shared/data") / "sequences" / GetParam();
+    folder_ = test::data_folder() / "sequences" / GetParam();
     if (!fs::exists(folder_)) GTEST_SKIP() << "skipped: no data";
   }
   fs::path folder_;

@@ -1,10 +1,10 @@
 // A rig from the scenes of the rendered clips, and a turned one put right by them; the true rigs are known.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <memory>
 
 #include "duoptic/rig_health.h"
+#include "tests/data.h"
 #include "tests/turned_rig.h"
 
 namespace duo {
@@ -15,8 +15,7 @@ using namespace test;
 class Clips : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    const char* data = std::getenv("DUOPTIC_DATA");
-    folder_ = std::filesystem::path(data ? data : "../shared/data") / "sequences" / GetParam();
+    folder_ = data_folder() / "sequences" / GetParam();
     if (!std::filesystem::exists(folder_)) GTEST_SKIP() << "skipped: no data";
   }
   std::unique_ptr<PairSource> pairs() const {

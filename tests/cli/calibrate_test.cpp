@@ -1,28 +1,22 @@
 // `duoptic board` and `duoptic calibrate` from outside: from a folder and from videos, its files, and one line for each input
 // that gives no rig.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "duoptic/rig.h"
 #include "duoptic/sink.h"
 #include "sinks/clip/avi.h"
 #include "tests/drawn_board.h"
-#include "tests/write_media.h"
+#include "tool.h"
 
 namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
 constexpr int kUsage = 2, kInput = 4, kOutput = 5;
-
-struct Ended {
-  int exit = -1;
-  std::string out, err;
-};
+using test::Ended;
 
 /// Mean over `width` pixels of a row: a board that moved while the shutter was open.
 Image<Rgb8> smeared(View<const Rgb8> in, int width) {
@@ -70,11 +64,7 @@ class CalibrateTool : public testing::Test {
   static View<const Rgb8> left(int i) { return pairs_[static_cast<std::size_t>(i)].left.pixels; }
   static View<const Rgb8> right(int i) { return pairs_[static_cast<std::size_t>(i)].right.pixels; }
 
-  static Ended run(const std::string& arguments) {
-    const std::string command = "cd '" + at("").string() + "' && '" DUO_TOOL "' " + arguments + " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::bytes_of(at("stdout.txt")), test::bytes_of(at("stderr.txt"))};
-  }
+  static Ended run(const std::string& arguments) { return test::run_tool(at(""), arguments); }
   static void expect_failure(const std::string& arguments, const std::string& words, int exit = kInput) {
     SCOPED_TRACE(arguments);
     const Ended ended = run("calibrate " + arguments + " --quiet -o out.json");

@@ -1,10 +1,8 @@
 // The tool as its users meet it: good runs leave the files they promise; bad input gives one clear line, the promised exit
 // code, and nothing under the final names.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -12,21 +10,17 @@
 #include "duoptic/sink.h"
 #include "duoptic/source.h"
 #include "duoptic/synthetic.h"
-#include "tests/write_media.h"
+#include "tool.h"
 
 namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
+using test::Ended;
 using test::put;
 
 constexpr int kUsage = 2, kCut = 3, kInput = 4, kOutput = 5;
-
-struct Ended {
-  int exit = -1;
-  std::string out, err;
-};
 
 /// A small synthetic pair with its rig, and the tool run beside it.
 class Cli : public ::testing::Test {
@@ -43,11 +37,7 @@ class Cli : public ::testing::Test {
 
   /// Runs the tool in the folder of its inputs; `before` is shell, for limits.
   Ended run(const std::string& arguments, const std::string& before = "") const {
-    const std::string command =
-        "cd '" + at("").string() + "' && " + before + " '" DUO_TOOL "' " + arguments + " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), bytes_of(at("stdout.txt")),
-            bytes_of(at("stderr.txt"))};
+    return test::run_tool(at(""), arguments, before);
   }
 
   /// Every bad call: one line, its exit code, its words, no output.

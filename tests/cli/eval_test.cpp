@@ -2,18 +2,21 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/data.h"
+
+namespace duo {
 namespace {
 
 /// The JSON of `duoptic eval middlebury` on the four scenes of version 2.
-nlohmann::json evaluate(const std::string& data, const std::string& options) {
+nlohmann::json evaluate(const std::filesystem::path& data, const std::string& options) {
   std::string command = DUO_TOOL " eval middlebury";
-  for (const char* scene : {"tsukuba", "venus", "teddy", "cones"}) command += " '" + data + "/middlebury/" + scene + "'";
+  for (const char* scene : {"tsukuba", "venus", "teddy", "cones"})
+    command += " '" + (data / "middlebury" / scene).string() + "'";
   FILE* pipe = popen((command + " --json " + options).c_str(), "r");
   std::string out;
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) out += static_cast<char>(c);
@@ -29,8 +32,8 @@ double v2_mean(const nlohmann::json& report, const std::string& method, const ch
 }
 
 TEST(Eval, FiguresOnTheFourScenes) {
-  const char* data = std::getenv("DUOPTIC_DATA");
-  if (data == nullptr || !std::filesystem::exists(std::string(data) + "/middlebury/cones")) GTEST_SKIP() << "skipped: no data";
+  const std::filesystem::path data = test::data_folder();
+  if (!std::filesystem::exists(data / "middlebury" / "cones")) GTEST_SKIP() << "skipped: no data";
   const nlohmann::json fine = evaluate(data, "");
   EXPECT_LE(v2_mean(fine, "duoptic sgm default", "bad_holes_percent"), 10.2);
   const nlohmann::json filled = evaluate(data, "--fill --no-peers");
@@ -50,8 +53,8 @@ TEST(Eval, FiguresOnTheFourScenes) {
 // Under each fault of two unlike webcams the default loses less than OpenCV's 3WAY at the parameters that suit these scenes
 // best.
 TEST(Eval, FaultsCostLessThanTheyCostOpenCv) {
-  const char* data = std::getenv("DUOPTIC_DATA");
-  if (data == nullptr || !std::filesystem::exists(std::string(data) + "/middlebury/cones")) GTEST_SKIP() << "skipped: no data";
+  const std::filesystem::path data = test::data_folder();
+  if (!std::filesystem::exists(data / "middlebury" / "cones")) GTEST_SKIP() << "skipped: no data";
   const nlohmann::json report = evaluate(data, "--perturb");
   ASSERT_EQ(report["perturbed"].size(), 4u);
   for (const auto& row : report["perturbed"]) {
@@ -62,3 +65,4 @@ TEST(Eval, FaultsCostLessThanTheyCostOpenCv) {
 }
 
 }  // namespace
+}  // namespace duo

@@ -1,28 +1,21 @@
 // `duoptic rig` from outside: verdicts, exit codes, files, and what it says of bad input.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "duoptic/rig.h"
 #include "duoptic/sink.h"
 #include "duoptic/synthetic.h"
-#include "tests/write_media.h"
+#include "tool.h"
 
 namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
 constexpr int kUsage = 2, kInput = 4, kOutput = 5;
-
-struct Ended {
-  int exit = -1;
-  std::string out, err;
-  nlohmann::json json() const { return nlohmann::json::parse(out, nullptr, false); }
-};
+using test::Ended;
 
 /// Pictures of the room with its rig, and the rig of before the right camera rolled by a degree. Rendered once for all tests.
 class RigTool : public testing::Test {
@@ -40,10 +33,7 @@ class RigTool : public testing::Test {
   static fs::path at(const std::string& name) { return *folder_ / name; }
 
   static Ended run(const std::string& arguments, const std::string& command_name = "rig") {
-    const std::string command =
-        "cd '" + at("").string() + "' && '" DUO_TOOL "' " + command_name + " " + arguments + " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::bytes_of(at("stdout.txt")), test::bytes_of(at("stderr.txt"))};
+    return test::run_tool(at(""), command_name + " " + arguments);
   }
   static void expect_failure(const std::string& arguments, int exit, const std::string& words,
                              const std::string& command_name = "rig") {

@@ -1,28 +1,20 @@
 // `duoptic synth` from outside: the clip it leaves, and what it says of bad options.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "duoptic/source.h"
-#include "tests/write_media.h"
+#include "tool.h"
 
 namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
 constexpr int kUsage = 2, kOutput = 5;
-
-struct Ended {
-  int exit = -1;
-  std::string out, err;
-};
+using test::Ended;
 
 Ended run(const test::TempFolder& folder, const std::string& arguments) {
-  const std::string out = folder / "stdout", err = folder / "stderr";
-  const int status = std::system((std::string(DUO_TOOL) + " synth " + arguments + " >" + out + " 2>" + err).c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::bytes_of(out), test::bytes_of(err)};
+  return test::run_tool(folder / "", "synth " + arguments);
 }
 
 TEST(Synth, LeavesAClip) {

@@ -1,9 +1,7 @@
 // `duoptic track` as its users meet it: what it writes on a clip, and what it says of bad input.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -11,23 +9,19 @@
 #include "duoptic/source.h"
 #include "duoptic/synthetic.h"
 #include "sinks/video_writer.h"
-#include "tests/write_media.h"
+#include "tool.h"
 
 namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
+using test::Ended;
 using test::put;
 
 constexpr int kUsage = 2, kCut = 3, kInput = 4, kOutput = 5;
 constexpr int kPairs = 6;
 constexpr char kSelect[] = " --select hand=160,100 --select elbow=160,77 --select shoulder=160,54 ";
-
-struct Ended {
-  int exit = -1;
-  std::string out, err;
-};
 
 /// A short clip of the synthetic room: a wall to see, on which three clicks lie as far apart as an arm's. Rendered once for all
 /// tests.
@@ -57,11 +51,7 @@ class Track : public ::testing::Test {
   static fs::path at(const std::string& name) { return *folder_ / name; }
 
   static Ended run(const std::string& arguments, const std::string& before = "") {
-    const std::string command =
-        "cd '" + at("").string() + "' && " + before + " '" DUO_TOOL "' " + arguments + " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), bytes_of(at("stdout.txt")),
-            bytes_of(at("stderr.txt"))};
+    return test::run_tool(at(""), arguments, before);
   }
 
   /// One line, its exit code, its words, nothing on stdout and no file.

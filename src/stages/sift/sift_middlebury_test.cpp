@@ -1,10 +1,10 @@
 // SIFT against OpenCV's on Middlebury's stereo pairs, and on second views of some of their pictures.
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "tests/data.h"
 #include "tests/sift_views.h"
 
 namespace duo {
@@ -15,8 +15,7 @@ namespace fs = std::filesystem;
 class SiftMiddlebury : public testing::Test {
  protected:
   void SetUp() override {
-    const char* data = std::getenv("DUOPTIC_DATA");
-    folder_ = fs::path(data ? data : "../shared/data") / "middlebury";
+    folder_ = test::data_folder() / "middlebury";
     if (!fs::exists(folder_)) GTEST_SKIP() << "skipped: no data";
   }
   cv::Mat read(const std::string& scene, const char* name) const {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include "duoptic/source.h"
 #include "duoptic/tracker.h"
 #include "tests/allocations.h"
+#include "tests/data.h"
 
 namespace duo {
 namespace {
@@ -111,14 +111,12 @@ constexpr int kAllFrames = 1000;
 class Clips : public testing::TestWithParam<Limits> {
  protected:
   void SetUp() override {
-    const char* data = std::getenv("DUOPTIC_DATA");
-    const fs::path folder = fs::path(data ? data : "../shared/data") / "sequences" / GetParam().clip;
+    const fs::path folder = test::data_folder() / "sequences" / GetParam().clip;
     if (!fs::exists(folder)) GTEST_SKIP() << "skipped: no data";
     open("sgm");
   }
   void open(const char* matcher) {
-    const char* data = std::getenv("DUOPTIC_DATA");
-    const auto opened = clip_.open(fs::path(data ? data : "../shared/data") / "sequences" / GetParam().clip, matcher);
+    const auto opened = clip_.open(test::data_folder() / "sequences" / GetParam().clip, matcher);
     ASSERT_TRUE(opened) << opened.error().what;
   }
   void expect_both_arms(double resting_hand_mm);
