@@ -18,7 +18,7 @@ namespace duo::app {
 template <class T>
 class Ahead {
  public:
-  /// `make` is called in the thread, until it gives anything but a picture. What it uses must outlive this.
+  /// `make` is called in the thread, until it gives an end or an error. What it uses must outlive this.
   explicit Ahead(std::function<Result<Next>(T&)> make) : make_(std::move(make)), thread_([this] { make_all(); }) {}
   ~Ahead() {
     {
@@ -49,7 +49,7 @@ class Ahead {
   void make_all() {
     for (bool more = true; more;) {
       Result<Next> next = make();
-      more = next && *next == Next::kPicture;
+      more = next && (*next == Next::kPicture || *next == Next::kNothing);
       std::unique_lock lock(mutex_);
       made_ = std::move(next);
       changed_.notify_all();

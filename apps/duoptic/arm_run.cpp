@@ -10,22 +10,6 @@
 namespace duo::app {
 namespace {
 
-/// From the first two pictures of the file; a single picture counts as one of 30 a second.
-Result<double> frame_interval_s(const std::string& path) {
-  constexpr double kUsual_s = 1.0 / 30;
-  DUO_TRY_ASSIGN(const auto source, open_source(path));
-  if (source->still()) return kUsual_s;
-  TimeNs t_ns[2] = {};
-  Picture picture;
-  for (TimeNs& t : t_ns) {
-    DUO_TRY_ASSIGN(const Next next, source->next(picture));
-    if (next != Next::kPicture) return kUsual_s;
-    t = picture.t_ns;
-  }
-  const double interval_s = static_cast<double>(t_ns[1] - t_ns[0]) * 1e-9;
-  return interval_s > 0 ? interval_s : kUsual_s;
-}
-
 /// As far as `z_m` needs, but no farther than every matcher can search: a large picture starts at a greater depth.
 int disparity_at(double z_m, const Rig& rig) {
   constexpr int kMost = 256;
@@ -63,7 +47,7 @@ Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, c
   setup.wants = {.color = true, .depth = false};
   DUO_TRY(run.engine_->prepare(setup));
   DUO_TRY_ASSIGN(run.tracker_, make_tracker("arm", options.tracker_preset));
-  DUO_TRY_ASSIGN(const double frame_s, frame_interval_s(left));
+  const double frame_s = pairs->frame_s();
   DUO_TRY(run.tracker_->prepare({rig, *run.engine_->rectified(), frame_s}));
 
   run.recording_.sources = {left};

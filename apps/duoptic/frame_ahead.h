@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -19,25 +20,24 @@ struct Matched {
   double engine_ms = 0;
 };
 
-/// Pairs through an engine, one frame ahead; they are read one pair ahead of that.
+/// Pairs through an engine, one frame ahead; files are read one pair ahead of that. A live source gives its newest pair when
+/// the engine is free.
 class FrameAhead {
  public:
   /// Pairs before number `first` are read, not matched, and not given. The engine must be prepared, and outlive this.
   FrameAhead(std::unique_ptr<PairSource> source, Engine& engine, std::int64_t first)
-      : source_(std::move(source)),
-        engine_(engine),
-        first_(first),
-        count_(source_->count()),
-        pairs_([this](Pair& into) { return source_->next(into); }),
-        frames_([this](Matched& into) { return match(into); }) {}
+      : source_(std::move(source)), engine_(engine), first_(first), count_(source_->count()) {
+    if (!source_->live()) pairs_.emplace([this](Pair& into) { return source_->next(into); });
+    frames_.emplace([this](Matched& into) { return match(into); });
+  }
 
   std::int64_t count() const { return count_; }
   /// As PairSource::next(), into last(); not to be called again after the end or an error.
-  Result<Next> next() { return frames_.next(last_); }
+  Result<Next> next() { return frames_->next(last_); }
   /// Lives until the next next().
   const Matched& last() const { return last_; }
   /// Before the end: until the next frame is ready; matching then rests.
-  void wait() { frames_.wait(); }
+  void wait() { frames_->wait(); }
 
   TimeNs start_ns() const { return start_ns_; }  // of the first pair, once next() gave one
   /// Pairs that were read before the end, and what PairSource::warning() says then.
@@ -47,7 +47,7 @@ class FrameAhead {
  private:
   Result<Next> match(Matched& into) {
     do {
-      DUO_TRY_ASSIGN(const Next next, pairs_.next(into.pair));
+      DUO_TRY_ASSIGN(const Next next, pairs_ ? pairs_->next(into.pair) : source_->next(into.pair));
       if (next != Next::kPicture) return next;
       if (read_ == 0) start_ns_ = into.pair.left.t_ns;
     } while (read_++ < first_);
@@ -64,8 +64,8 @@ class FrameAhead {
   std::int64_t read_ = 0;
   TimeNs start_ns_ = 0;
   Matched last_;
-  Ahead<Pair> pairs_;  // the threads come last, in the order of who uses whom
-  Ahead<Matched> frames_;
+  std::optional<Ahead<Pair>> pairs_;  // the threads come last, in the order of who uses whom
+  std::optional<Ahead<Matched>> frames_;
 };
 
 }  // namespace duo::app

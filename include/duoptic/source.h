@@ -1,13 +1,15 @@
-// Sources give pictures: files now, cameras later. Pairs come from two sources or from one with both views side by side.
+// Sources give pictures, from files or as they are taken. Pairs come from two sources or from one with both views side by side.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "duoptic/frame.h"
 #include "duoptic/result.h"
+#include "duoptic/rig.h"
 
 namespace duo {
 
@@ -15,6 +17,7 @@ enum class Next : std::uint8_t {
   kPicture,  // one more
   kEnd,      // no more
   kCut,      // no more, but the file says there should be: it was cut short; all whole pictures were given
+  kNothing,  // live: none came for a while, a camera may be unplugged; ask again
 };
 
 /// One camera, live or recorded.
@@ -26,6 +29,8 @@ class Source {
   virtual std::int64_t count() const = 0;
   /// True for one picture, false for a stream of them.
   virtual bool still() const = 0;
+  /// Mean time between pictures, seconds; 1/30 where nothing is known.
+  virtual double frame_s() const { return 1.0 / 30; }
   /// Fills `into` with the next picture; its memory is used again when it already has the right size.
   virtual Result<Next> next(Picture& into) = 0;
 };
@@ -42,6 +47,15 @@ class PairSource {
   virtual Size size() const = 0;  // of one view
   virtual std::int64_t count() const = 0;
   virtual bool still() const = 0;
+  virtual double frame_s() const { return 1.0 / 30; }
+  /// The rig that the pairs were taken with, when the source knows it.
+  virtual std::optional<Rig> rig() const { return std::nullopt; }
+  /// Files wait: each pair is given. Live ones do not: next() waits, a second at most, for a pair that was not given yet, and
+  /// gives the newest.
+  virtual bool live() const { return false; }
+  /// Pairs of a live source that nobody took in time; any thread may ask.
+  virtual std::int64_t dropped() const { return 0; }
+  /// Picture::t_ns counts from the start of a file; live, it is the steady clock's time of capture.
   virtual Result<Next> next(Pair& into) = 0;
   /// After the end: why the stream ended before its files did (one was cut short, or is shorter); empty when it did not.
   virtual std::string warning() const = 0;

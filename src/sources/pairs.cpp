@@ -21,6 +21,7 @@ class TwoFiles final : public PairSource {
   Size size() const override { return left_->size(); }
   std::int64_t count() const override { return std::min(left_->count(), right_->count()); }
   bool still() const override { return left_->still(); }
+  double frame_s() const override { return left_->frame_s(); }
   std::string warning() const override { return warning_; }
 
   Result<Next> next(Pair& into) override {
@@ -53,6 +54,7 @@ class SideBySide final : public PairSource {
   Size size() const override { return {both_->size().width / 2, both_->size().height}; }
   std::int64_t count() const override { return both_->count(); }
   bool still() const override { return both_->still(); }
+  double frame_s() const override { return both_->frame_s(); }
   std::string warning() const override { return warning_; }
 
   Result<Next> next(Pair& into) override {

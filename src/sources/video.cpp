@@ -30,6 +30,7 @@ class VideoFile final : public Source {
   Size size() const override { return size_; }
   std::int64_t count() const override { return announced_; }
   bool still() const override { return false; }
+  double frame_s() const override { return static_cast<double>(frame_ns()) * 1e-9; }
   Result<Next> next(Picture& into) override;
 
  private:
@@ -41,7 +42,7 @@ class VideoFile final : public Source {
   TimeNs announced_end_ns() const;
   TimeNs frame_ns() const {
     const AVRational rate = stream().avg_frame_rate;
-    return rate.num > 0 && rate.den > 0 ? to_ns(1, av_inv_q(rate)) : 40'000'000;
+    return rate.num > 0 && rate.den > 0 ? to_ns(1, av_inv_q(rate)) : 33'333'333;
   }
   const AVStream& stream() const { return *container_->streams[stream_]; }
 
