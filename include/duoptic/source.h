@@ -62,7 +62,8 @@ class PairSource {
 };
 
 /// Opens LEFT and RIGHT (two pictures or two videos of the same size); an empty `right` means that `left` holds both views
-/// side by side.
+/// side by side. "synthetic", "synthetic:SCRIPT" or "synthetic:SCRIPT:WIDTHxHEIGHT" alone is the person of `duoptic synth`,
+/// live.
 ///
 /// Errors  those of open_source(); sizes differ; one is a picture and the other a video; odd width side by side
 Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "duoptic/source.h"
+#include "sources/synthetic/live_clip.h"
 
 namespace duo {
 namespace {
@@ -87,6 +88,7 @@ std::string size_text(Size size) { return fmt::format("{}x{}", size.width, size.
 }  // namespace
 
 Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right) {
+  if (right.empty() && is_synthetic_name(left.string())) return open_live_clip(left.string());
   DUO_TRY_ASSIGN(auto left_source, open_source(left));
   const Size size = left_source->size();
   if (right.empty()) {
