@@ -9,6 +9,7 @@ namespace {
 using namespace std::string_view_literals;
 
 av::Decoder jpeg_decoder() {
+  av_log_set_level(AV_LOG_QUIET);  // what is lost is counted
   return av::open_decoder(AV_CODEC_ID_MJPEG, [](AVCodecContext& context) {
     context.err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_EXPLODE;
     context.max_pixels = std::int64_t{av::ToRgb::kMaxSide} * av::ToRgb::kMaxSide;
