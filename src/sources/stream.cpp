@@ -7,12 +7,14 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <thread>
 #include <utility>
 
 #include "core/clock.h"
+#include "core/libav.h"
 
 namespace duo {
 namespace {
@@ -37,6 +39,12 @@ struct StreamState {
   std::string trouble;
   bool stopped = false, ended = false;
 };
+
+/// What libraries print is said in our results.
+void silence() {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  av_log_set_callback([](void*, int, const char*, va_list) {});  // a level would be set again by OpenCV
+}
 
 cv::VideoCapture open_capture(const std::string& name) {
   const bool pipeline = name.rfind(kPipeline, 0) == 0;
@@ -65,6 +73,7 @@ void read_stream(StreamState& state) {
 }
 
 void run_stream(const std::shared_ptr<StreamState>& state) {
+  silence();
   while (true) {
     try {
       read_stream(*state);
@@ -72,6 +81,7 @@ void run_stream(const std::shared_ptr<StreamState>& state) {
     }
     std::unique_lock lock(state->mutex);
     state->trouble = fmt::format("{} is away: it gives no pictures; opening it again", state->name);
+    state->changed.notify_all();
     state->changed.wait_for(lock, kTryAgain, [&] { return state->stopped; });
     if (state->stopped) break;
   }
@@ -101,10 +111,12 @@ class Stream final : public Source {
   /// Waits for the first picture, which tells the size.
   Result<void> start() {
     std::unique_lock lock(state_->mutex);
-    if (!state_->changed.wait_for(lock, kFirstPicture, [this] { return state_->arrived > 0; }))
+    state_->changed.wait_for(lock, kFirstPicture, [this] { return state_->arrived > 0 || !state_->trouble.empty(); });
+    if (state_->arrived == 0)
       return Error{ErrorCode::kNotFound,
-                   fmt::format("cannot open stream {}: no picture within {} s; is the address right and its camera on?",
-                               state_->name, kFirstPicture.count())};
+                   fmt::format("cannot open stream {}: it gives no picture; is its camera on, and the address right, or is the "
+                               "pipeline's every element installed and the last one appsink?",
+                               state_->name)};
     size_ = {state_->newest.cols, state_->newest.rows};
     if (state_->rate_hz >= 1 && state_->rate_hz <= 1000) frame_s_ = 1 / state_->rate_hz;
     return {};

@@ -14,7 +14,7 @@ bool is_stream_name(const std::string& name);
 /// Opens a stream through OpenCV. Its pictures are stamped when they arrive; one that breaks off is opened again. Nothing waits
 /// for a stream that hangs.
 ///
-/// Errors  no picture within 10 s; a kind of stream that this machine's OpenCV does not read
+/// Errors  it cannot be opened, or gives no picture within 10 s
 Result<std::unique_ptr<Source>> open_stream(const std::string& name);
 
 }  // namespace duo

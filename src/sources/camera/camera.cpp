@@ -138,8 +138,9 @@ void CameraSource::settle_look() {
   if (!look) return;
   locked_ = true;
   const std::string missing = lock_look(*device_, *look);
-  say(note_,
-      missing.empty() ? "" : fmt::format("{} ({}) does not look as the left camera does: {}", name_, camera_.name, missing));
+  say(note_, missing.empty()
+                 ? ""
+                 : fmt::format("{} ({}) cannot be locked to the left camera's look: {}", name_, camera_.name, missing));
 }
 
 /// Waits for a buffer and passes over those that have a newer one behind them. False when there is none, or the camera left.

@@ -48,7 +48,8 @@ std::string lock_look(CameraDevice& camera, const CameraLook& look) {
   lock(camera, V4L2_CID_EXPOSURE_ABSOLUTE, look.exposure, "exposure", missing);
   lock(camera, V4L2_CID_GAIN, look.gain, "gain", missing);
   lock(camera, V4L2_CID_WHITE_BALANCE_TEMPERATURE, look.white_balance, "white balance", missing);
-  if (!look.exposure && !camera.control(V4L2_CID_EXPOSURE_AUTO)) missing += missing.empty() ? "no exposure" : ", no exposure";
+  if (!look.exposure && !camera.control(V4L2_CID_EXPOSURE_AUTO))
+    missing += missing.empty() ? "no manual exposure" : ", no manual exposure";
   return missing;
 }
 

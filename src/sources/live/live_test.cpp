@@ -138,5 +138,27 @@ TEST(LivePairs, RightPairsWithTheirTrueSkewThroughJitterLossesAndUnplugging) {
   EXPECT_NE(pairs->warning().find("camera:2 is back since"), std::string::npos) << pairs->warning();
 }
 
+/// A thousand times: whatever is unplugged in which moment, nothing hangs, and pairs come again; the end may come while one is
+/// away.
+TEST(LivePairs, BothUnpluggedOverAndOver) {
+  Desk desk;
+  desk.speed = 100;
+  auto both = open_cameras(desk.calls, "camera:0", "camera:2", kWish);
+  ASSERT_TRUE(both) << both.error().what;
+  const auto pairs = make_live_pairs(std::move((*both)[0]), std::move((*both)[1]));
+  Pair pair;
+  std::mt19937 random(1);
+  for (int i = 0; i < 1000; ++i) {
+    auto& plugged = desk.plugged[random() % 2];
+    plugged = false;
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 1000));
+    plugged = true;
+    if (i % 50 != 0) continue;
+    int tries = 0;
+    while (*pairs->next(pair) != Next::kPicture) ASSERT_LT(++tries, 20) << pairs->warning();
+  }
+  desk.plugged[1] = false;
+}
+
 }  // namespace
 }  // namespace duo
