@@ -17,6 +17,7 @@ endforeach()
 target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/live/live_pairs.cpp ${PROJECT_SOURCE_DIR}/src/sources/live/pairing.cpp)
 duoptic_test(sources/live ${PROJECT_SOURCE_DIR}/src/sources/live/live_test.cpp)
 if(DUO_TESTS)
-  target_sources(sources_live_test PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/camera/camera_test.cpp)
+  target_sources(sources_live_test PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/camera/camera_test.cpp
+    ${PROJECT_SOURCE_DIR}/src/sources/stream_test.cpp)
 endif()
 include(${CMAKE_CURRENT_LIST_DIR}/synthetic/files.cmake)

@@ -23,8 +23,8 @@ constexpr char kPipeline[] = "gst:";
 constexpr auto kFirstPicture = std::chrono::seconds(10);
 constexpr auto kStreamPatience = std::chrono::milliseconds(500);
 constexpr auto kTryAgain = std::chrono::milliseconds(500);
-constexpr auto kGoodbye = std::chrono::seconds(2);
-constexpr int kReadTimeout_ms = 3000;
+constexpr auto kGoodbye = std::chrono::seconds(3);  // longer than every time-out below
+constexpr int kOpenTimeout_ms = 2000, kReadTimeout_ms = 2000;
 
 /// What the reading thread and its source share. It outlives the source while a call into OpenCV hangs: there is no way to end
 /// one.
@@ -53,7 +53,7 @@ cv::VideoCapture open_capture(const std::string& name) {
     capture.open(name.substr(sizeof kPipeline - 1), cv::CAP_GSTREAMER);
   else
     capture.open(name, cv::CAP_FFMPEG,
-                 {cv::CAP_PROP_OPEN_TIMEOUT_MSEC, kReadTimeout_ms, cv::CAP_PROP_READ_TIMEOUT_MSEC, kReadTimeout_ms});
+                 {cv::CAP_PROP_OPEN_TIMEOUT_MSEC, kOpenTimeout_ms, cv::CAP_PROP_READ_TIMEOUT_MSEC, kReadTimeout_ms});
   return capture;
 }
 
