@@ -40,9 +40,10 @@ class FrameAhead {
   void wait() { frames_->wait(); }
 
   TimeNs start_ns() const { return start_ns_; }  // of the first pair, once next() gave one
-  /// Pairs that were read before the end, and what PairSource::warning() says then.
+  /// Pairs that were read before the end, and what PairSource::warning() says then; live, at any time.
   std::int64_t read() const { return read_; }
   std::string warning() const { return source_->warning(); }
+  std::int64_t dropped() const { return source_->dropped(); }
 
  private:
   Result<Next> match(Matched& into) {
