@@ -76,14 +76,9 @@ class PairSource {
   virtual std::string warning() const = 0;
 };
 
-<<<<<<< HEAD
-/// Opens LEFT and RIGHT (two pictures or two videos of the same size); an empty `right` means that `left` holds both views
-/// side by side. "synthetic", "synthetic:SCRIPT" or "synthetic:SCRIPT:WIDTHxHEIGHT" alone is the person of `duoptic synth`,
-/// live.
-=======
 /// Opens LEFT and RIGHT (two pictures, two videos or two live sources of the same size); an empty `right` means that `left`
 /// holds both views side by side. Two cameras share exposure, gain and white balance: the left one's, after a second.
->>>>>>> cam
+/// "synthetic", "synthetic:SCRIPT" or "synthetic:SCRIPT:WIDTHxHEIGHT" alone is the person of `duoptic synth`, live.
 ///
 /// Errors  those of open_source(); sizes differ; a picture and a video, a file and a live source, one camera twice; odd width
 ///         side by side

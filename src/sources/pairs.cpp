@@ -6,13 +6,10 @@
 #include <utility>
 
 #include "duoptic/source.h"
-<<<<<<< HEAD
-#include "sources/synthetic/live_clip.h"
-=======
 #include "sources/camera/camera.h"
 #include "sources/camera/modes.h"
 #include "sources/live/live_pairs.h"
->>>>>>> cam
+#include "sources/synthetic/live_clip.h"
 
 namespace duo {
 namespace {
@@ -95,19 +92,14 @@ std::string size_text(Size size) { return fmt::format("{}x{}", size.width, size.
 
 }  // namespace
 
-<<<<<<< HEAD
-Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right) {
-  if (right.empty() && is_synthetic_name(left.string())) return open_live_clip(left.string());
-  DUO_TRY_ASSIGN(auto left_source, open_source(left));
-=======
 Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right,
                                                const CameraWish& wish) {
+  if (right.empty() && is_synthetic_name(left.string())) return open_live_clip(left.string());
   if (is_camera_name(left.string()) && is_camera_name(right.string())) {
     DUO_TRY_ASSIGN(auto both, open_cameras(linux_calls(), left.string(), right.string(), wish));
     return make_live_pairs(std::move(both[0]), std::move(both[1]));
   }
   DUO_TRY_ASSIGN(auto left_source, open_source(left, wish));
->>>>>>> cam
   const Size size = left_source->size();
   if (right.empty()) {
     if (size.width % 2 != 0)
