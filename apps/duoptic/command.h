@@ -60,6 +60,12 @@ Command add(CLI::App& app);
 namespace rig {
 Command add(CLI::App& app);
 }
+namespace record {
+Command add(CLI::App& app);
+}
+namespace play {
+Command add(CLI::App& app);
+}
 namespace version {
 Command add(CLI::App& app);
 }

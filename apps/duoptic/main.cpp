@@ -57,7 +57,7 @@ int run(int argc, char** argv) {
   app.footer(kFooter);
   const std::vector<Command> commands = {depth::add(app), track::add(app),  eval::add(app),  bench::add(app),
                                          demo::add(app),  synth::add(app),  board::add(app), calibrate::add(app),
-                                         rig::add(app),   version::add(app)};
+                                         rig::add(app),   record::add(app), play::add(app),  version::add(app)};
   const auto chosen = [&]() -> const Command* {
     for (const Command& command : commands)
       if (command.app->parsed()) return &command;

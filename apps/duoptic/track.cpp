@@ -9,6 +9,8 @@
 
 #include "arm_run.h"
 #include "progress.h"
+#include "sink_options.h"
+#include "stop.h"
 #include "timing.h"
 
 namespace duo::app::track {
@@ -23,14 +25,17 @@ constexpr char kFooter[] =
     "  duoptic track left.avi right.avi --rig rig.json --select hand=451,360 --select elbow=478,285 --select shoulder=446,201\n"
     "  duoptic track left.avi right.avi --rig rig.json --at-frame 40 --select hand=.. --select elbow=.. --select shoulder=.. "
     "\\\n"
-    "      --select2 hand=.. --select2 elbow=.. --select2 shoulder=.. -o arms.jsonl --video arms.mp4";
+    "      --select2 hand=.. --select2 elbow=.. --select2 shoulder=.. -o arms.jsonl --video arms.mp4\n"
+    "  duoptic track clip.mkv --select hand=.. --select elbow=.. --select shoulder=.. --realtime --vmc 127.0.0.1:39539 \\\n"
+    "      --bvh arm.bvh --csv arm.csv -o arm.jsonl                       a recording, with its own rig, to an avatar and to files";
 
 struct Options {
-  std::string left, right, rig, output, video;
+  std::string left, right, rig;
   std::vector<std::string> select, select2;
   std::int64_t at_frame = 0;
-  bool stats = false, quiet = false;
+  bool stats = false, quiet = false, realtime = false;
   ArmOptions arm;
+  SinkOptions sinks;
 };
 
 using Click = ArmSelection::Click;
@@ -78,66 +83,70 @@ std::vector<ArmSelection> selections(const Options& options) {
 
 /// The frame in which joints are selected.
 Result<void> first_frame(ArmRun& run, std::int64_t number, const std::string& left) {
-  DUO_TRY_ASSIGN(const Next next, run.next());
+  Next next = Next::kNothing;
+  while (next == Next::kNothing) {
+    DUO_TRY_ASSIGN(next, run.next());
+  }
   if (next == Next::kPicture) return {};
   const std::int64_t read = run.frames().read();
   return Error{ErrorCode::kBadInput, fmt::format("cannot select at frame {}: {} gives {} pair{}, numbered from 0", number, left,
                                                  read, read == 1 ? "" : "s")};
 }
 
-using Sinks = std::vector<std::unique_ptr<Sink>>;
-
-Result<Sinks> make_sinks(const Options& options, const Recording& recording, const CLI::App& app) {
-  Sinks sinks;
-  if (!options.video.empty()) {
-    std::string note;
-    DUO_TRY_ASSIGN(auto video, make_panel_video(options.video, recording, note));
-    if (!note.empty()) say(app, "warning: " + note);
-    sinks.push_back(std::move(video));
-  }
-  DUO_TRY_ASSIGN(auto lines, make_json_lines(options.output, recording));
-  sinks.push_back(std::move(lines));
-  return sinks;
-}
-
 struct Summary {
   std::vector<double> engine_ms, tracker_ms;
   Next end = Next::kEnd;
+  std::string dropped;  // by each sink that did
 };
 
-/// Tracks from the first frame to the end of the files.
+/// Tracks from the first frame to the end of the files, or live until Ctrl-C.
 Result<Summary> track_all(ArmRun& run, const std::vector<ArmSelection>& arms, const Options& options, const CLI::App& app) {
   DUO_TRY(run.select(arms));
-  DUO_TRY_ASSIGN(const Sinks sinks, make_sinks(options, run.recording(), app));
+  DUO_TRY_ASSIGN(const auto sinks, options.sinks.make(run.recording(), run.frames().live(), app));
   Summary summary;
   Progress progress(app, run.frames().count(), options.quiet);
+  std::optional<StopOnSignal> stop;
+  if (run.frames().live()) stop.emplace();
   while (true) {
     TrackedFrame frame = run.tracked(run.track());
     if (options.stats) frame.times = run.times();
-    for (const auto& sink : sinks) DUO_TRY(sink->write(frame));
+    for (const auto& [name, sink] : sinks) DUO_TRY(sink->write(frame));
     summary.engine_ms.push_back(run.times().engine_ms);
     summary.tracker_ms.push_back(run.times().tracker_ms);
     progress.frame(frame.number + 1);
-    DUO_TRY_ASSIGN(summary.end, run.next());
-    if (summary.end != Next::kPicture) break;
+    do {
+      DUO_TRY_ASSIGN(summary.end, run.next());
+    } while (summary.end == Next::kNothing && !(stop && stop->asked()));
+    if (summary.end != Next::kPicture || (stop && stop->asked())) break;
   }
-  for (const auto& sink : sinks) DUO_TRY(sink->finish());
+  for (const auto& [name, sink] : sinks) DUO_TRY(sink->finish());
+  summary.dropped = dropped_text(sinks);
   return summary;
 }
 
 std::string text_of(const Summary& summary, double seconds, const ArmRun& run, const Options& options) {
   const std::size_t frames = summary.engine_ms.size();
   return fmt::format(
-      "{} frame{} of {}x{} in {:.1f} s = {:.1f} frames/s; engine {:.1f} ms, tracker {:.1f} ms ({}, {}, {} thread{})", frames,
+      "{} frame{} of {}x{} in {:.1f} s = {:.1f} frames/s; engine {:.1f} ms, tracker {:.1f} ms ({}, {}, {} thread{}){}{}", frames,
       frames == 1 ? "" : "s", run.recording().size.width, run.recording().size.height, seconds,
       static_cast<double>(frames) / seconds, median(summary.engine_ms), median(summary.tracker_ms), run.recording().engine,
-      run.recording().tracker_preset, options.arm.engine.threads, options.arm.engine.threads == 1 ? "" : "s");
+      run.recording().tracker_preset, options.arm.engine.threads, options.arm.engine.threads == 1 ? "" : "s",
+      run.frames().dropped() > 0 ? fmt::format("; {} pairs dropped", run.frames().dropped()) : "", summary.dropped);
 }
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
   const std::vector<ArmSelection> arms = selections(options);
-  DUO_TRY_ASSIGN(const Rig rig, load_rig(options.rig));
-  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(options.left, options.right, rig, options.arm, options.at_frame));
+  std::optional<Rig> rig;
+  if (!options.rig.empty()) {
+    DUO_TRY_ASSIGN(rig, load_rig(options.rig));
+  }
+  DUO_TRY_ASSIGN(auto pairs, open_pairs(options.left, options.right));
+  if (!rig) rig = pairs->rig();
+  if (!rig) throw CLI::RequiredError("--rig");  // what is no recording does not bring its own
+  if (options.realtime && !pairs->live()) pairs = in_real_time(std::move(pairs));
+  std::vector<std::string> sources = {options.left};
+  if (!options.right.empty()) sources.push_back(options.right);
+  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(pairs), std::move(sources), *rig, options.arm, options.at_frame));
   DUO_TRY(first_frame(run, options.at_frame, options.left));
   Result<Summary> summary = Summary{};
   const Times times = timed([&] { summary = track_all(run, arms, options, app); });
@@ -145,7 +154,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   // stdout belongs to the lines when they go there.
   if (options.stats)
     say(app, text_of(*summary, times.wall_ms / 1000, run, options));
-  else if (!options.quiet && !options.output.empty())
+  else if (!options.quiet && !options.sinks.lines.empty())
     fmt::print("{}\n", text_of(*summary, times.wall_ms / 1000, run, options));
   if (const std::string warning = run.frames().warning(); !warning.empty()) say(app, "warning: " + warning);
   return summary->end == Next::kCut ? Exit::kCut : Exit::kOk;
@@ -156,9 +165,9 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("track", "An arm in 3D through two videos, from a click on hand, elbow and shoulder");
   const auto options = std::make_shared<Options>();
-  sub->add_option("LEFT", options->left, "Video of the left camera, or of both side by side")->required();
+  sub->add_option("LEFT", options->left, "Video of the left camera, a recording, or both views side by side")->required();
   sub->add_option("RIGHT", options->right, "Video of the right camera");
-  sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON)")->required();
+  sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); a recording may bring its own");
   sub->add_option("--select", options->select, "Where hand, elbow and shoulder are; once for each")
       ->type_name("JOINT=X,Y")
       ->required();
@@ -168,8 +177,8 @@ Command add(CLI::App& app) {
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
       ->capture_default_str();
-  sub->add_option("-o,--output", options->output, "File for the JSON lines instead of stdout")->type_name("FILE");
-  sub->add_option("--video", options->video, "MP4 with the four panels: joints, depth, arm region, hue")->type_name("FILE");
+  options->sinks.add_to(*sub);
+  sub->add_flag("--realtime", options->realtime, "Take files at the pace of their capture times, as if live: late pairs are dropped");
   options->arm.add_to(*sub);
   sub->add_flag("--stats", options->stats, "Add times to each line and print a summary of them on stderr");
   sub->add_flag("--quiet", options->quiet, "No progress and no summary");

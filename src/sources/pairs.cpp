@@ -1,4 +1,4 @@
-// open_pairs(): two files, or one with both views side by side, as one stream of pairs.
+// open_pairs(): two files, or one with both views as two tracks or side by side, as one stream of pairs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "duoptic/source.h"
+#include "sources/recording.h"
+#include "sources/video.h"
 
 namespace duo {
 namespace {
@@ -18,8 +20,14 @@ class TwoFiles final : public PairSource {
  public:
   TwoFiles(std::unique_ptr<Source> left, std::unique_ptr<Source> right, std::string left_name, std::string right_name)
       : left_(std::move(left)), right_(std::move(right)), names_{std::move(left_name), std::move(right_name)} {}
+  /// Both tracks of a recording.
+  TwoFiles(std::unique_ptr<Source> left, std::unique_ptr<Source> right, const std::string& name, RecordingHead head)
+      : TwoFiles(std::move(left), std::move(right), name, name) {
+    head_ = std::move(head);
+  }
   Size size() const override { return left_->size(); }
-  std::int64_t count() const override { return std::min(left_->count(), right_->count()); }
+  std::int64_t count() const override { return head_ ? head_->pairs : std::min(left_->count(), right_->count()); }
+  std::optional<Rig> rig() const override { return head_ ? head_->rig : std::nullopt; }
   bool still() const override { return left_->still(); }
   double frame_s() const override { return left_->frame_s(); }
   std::string warning() const override { return warning_; }
@@ -44,6 +52,7 @@ class TwoFiles final : public PairSource {
  private:
   std::unique_ptr<Source> left_, right_;
   std::string names_[2];
+  std::optional<RecordingHead> head_;
   std::string warning_;
   std::uint64_t given_ = 0;
 };
@@ -84,12 +93,28 @@ class SideBySide final : public PairSource {
 
 std::string size_text(Size size) { return fmt::format("{}x{}", size.width, size.height); }
 
+Result<void> check_sizes(const Source& left, const Source& right, const std::filesystem::path& left_name,
+                         const std::filesystem::path& right_name) {
+  if (left.size() == right.size()) return {};
+  return Error{ErrorCode::kBadInput,
+               fmt::format("cannot pair {} with {}: sizes differ, {} and {}; both views need the same size", left_name.string(),
+                           right_name.string(), size_text(left.size()), size_text(right.size()))};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right) {
   DUO_TRY_ASSIGN(auto left_source, open_source(left));
   const Size size = left_source->size();
   if (right.empty()) {
+    DUO_TRY_ASSIGN(std::optional<RecordingHead> recording, read_recording_head(left));
+    if (recording) {
+      DUO_TRY_ASSIGN(left_source, open_video(left, 0));
+      DUO_TRY_ASSIGN(auto right_source, open_video(left, 1));
+      DUO_TRY(check_sizes(*left_source, *right_source, left, left));
+      return std::unique_ptr<PairSource>(std::make_unique<TwoFiles>(std::move(left_source), std::move(right_source),
+                                                                    left.string(), std::move(*recording)));
+    }
     if (size.width % 2 != 0)
       return Error{ErrorCode::kBadInput,
                    fmt::format("cannot split {}: both views side by side need an even width, it is {}; give LEFT "
@@ -101,10 +126,7 @@ Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left
   if (left_source->still() != right_source->still())
     return Error{ErrorCode::kBadInput,
                  fmt::format("cannot pair {} with {}: one is a picture, the other a video", left.string(), right.string())};
-  if (right_source->size() != size)
-    return Error{ErrorCode::kBadInput,
-                 fmt::format("cannot pair {} with {}: sizes differ, {} and {}; both views need the same size", left.string(),
-                             right.string(), size_text(size), size_text(right_source->size()))};
+  DUO_TRY(check_sizes(*left_source, *right_source, left, right));
   return std::unique_ptr<PairSource>(
       std::make_unique<TwoFiles>(std::move(left_source), std::move(right_source), left.string(), right.string()));
 }
