@@ -130,11 +130,13 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("depth", "Disparity, depth and points of pictures or videos");
   const auto options = std::make_shared<Options>();
-  sub->add_option("LEFT", options->left, "Picture or video of the left camera, a recording, or both views side by side")->required();
+  sub->add_option("LEFT", options->left, "Picture or video of the left camera, a recording, or both views side by side")
+      ->required();
   sub->add_option("RIGHT", options->right, "Picture or video of the right camera");
-  sub->add_option("--rig", options->rig,
-                  "Calibration (our JSON, OpenCV's YAML or JSON); without it, and in no recording that has one, the pair is taken "
-                  "as rectified");
+  sub->add_option(
+      "--rig", options->rig,
+      "Calibration (our JSON, OpenCV's YAML or JSON); without it, and in no recording that has one, the pair is taken "
+      "as rectified");
   CLI::Option* most = sub->add_option("--max-disparity", options->max_disparity, "Searches 0 .. N-1 px")
                           ->type_name("N")
                           ->check(CLI::Range(1, Engine::kMaxDisparity))

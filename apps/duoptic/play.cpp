@@ -14,7 +14,8 @@ namespace duo::app::play {
 namespace {
 
 constexpr char kFooter[] =
-    "Prints what a recording holds: codecs, pairs, length, rate, gaps, pictures that the cameras took and the file lacks, rig.\n"
+    "Prints what a recording holds: codecs, pairs, length, rate, gaps, pictures that the cameras took and the file lacks, "
+    "rig.\n"
     "--export writes left.avi and right.avi (the same packets), times.csv (capture times) and rig.json into a folder.\n"
     "Every command that takes LEFT takes a recording alone; its rig is used where --rig is left out.\n\n"
     "Examples:\n"
@@ -54,8 +55,8 @@ void print(const RecordingReport& r, const Options& options, const std::vector<s
     return;
   }
   fmt::print("tracks   left {}, right {}, {}x{}\n", r.left.codec, r.right.codec, r.size.width, r.size.height);
-  fmt::print("length   {} pairs in {:.2f} s, {:.2f} a second, longest gap {:.0f} ms, {:.1f} MB{}\n", r.pairs, r.length_s, rate(r),
-             1e3 * r.longest_gap_s, static_cast<double>(r.bytes) * 1e-6, r.date.empty() ? "" : ", taken " + r.date);
+  fmt::print("length   {} pairs in {:.2f} s, {:.2f} a second, longest gap {:.0f} ms, {:.1f} MB{}\n", r.pairs, r.length_s,
+             rate(r), 1e3 * r.longest_gap_s, static_cast<double>(r.bytes) * 1e-6, r.date.empty() ? "" : ", taken " + r.date);
   fmt::print("drops    {} left and {} right pictures were taken and are not in it\n", r.left.missing, r.right.missing);
   fmt::print("skew     {:.1f} ms at most between the pictures of a pair\n", 1e3 * r.skew_s);
   fmt::print("rig      {}\n", r.rig ? describe(*r.rig) : "none; give --rig to the commands that need one");
@@ -73,7 +74,8 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
     files = out.paths();
   }
   print(report, options, files);
-  if (report.cut) say(app, fmt::format("warning: {} was killed or cut; its {} whole pairs are good", options.recording, report.pairs));
+  if (report.cut)
+    say(app, fmt::format("warning: {} was killed or cut; its {} whole pairs are good", options.recording, report.pairs));
   return report.cut ? Exit::kCut : Exit::kOk;
 }
 

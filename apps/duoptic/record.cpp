@@ -16,7 +16,8 @@ namespace {
 
 constexpr char kFooter[] =
     "One Matroska file with two video tracks that ordinary players open: JPEG as the cameras delivered it, other pictures as\n"
-    "FFV1, nothing lost; capture times to the nanosecond and the rig are in it. Written under its name from the start: after a\n"
+    "FFV1, nothing lost; capture times to the nanosecond and the rig are in it. Written under its name from the start: after "
+    "a\n"
     "crash, a full disk or Ctrl-C all pairs up to then are there. Every command that takes LEFT takes a recording alone.\n\n"
     "Examples:\n"
     "  duoptic record camera:0 camera:2 --rig rig.json -o clip.mkv              until Ctrl-C\n"
@@ -58,12 +59,11 @@ Result<Summary> record_all(PairSource& pairs, Recorder& recorder, const Options&
 
 void print(const Summary& summary, const Recorder& recorder, const PairSource& pairs, const Options& options, bool rig) {
   if (options.json) {
-    const nlohmann::json out = {{"file", options.output},       {"pairs", recorder.pairs()},
-                                {"width", pairs.size().width},  {"height", pairs.size().height},
-                                {"length_s", summary.length_s}, {"bytes", recorder.bytes()},
-                                {"codecs", recorder.codecs()},  {"dropped", pairs.dropped()},
-                                {"rig", rig},                   {"cut", summary.end == Next::kCut},
-                                {"warning", pairs.warning()}};
+    const nlohmann::json out = {
+        {"file", options.output},           {"pairs", recorder.pairs()},    {"width", pairs.size().width},
+        {"height", pairs.size().height},    {"length_s", summary.length_s}, {"bytes", recorder.bytes()},
+        {"codecs", recorder.codecs()},      {"dropped", pairs.dropped()},   {"rig", rig},
+        {"cut", summary.end == Next::kCut}, {"warning", pairs.warning()}};
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else if (!options.quiet) {
     fmt::print("{}: {} pair{} of {}x{} in {:.1f} s, {}, {:.1f} MB, {} rig{}\n", options.output, recorder.pairs(),
@@ -84,10 +84,10 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
     DUO_TRY_ASSIGN(setup.rig, load_rig(options.rig));
   }
   if (setup.rig && setup.rig->left.size != pairs->size())
-    return Error{ErrorCode::kBadInput,
-                 fmt::format("cannot record {} with this rig: it is of pictures of {}x{}, these have {}x{}", options.left,
-                             setup.rig->left.size.width, setup.rig->left.size.height, pairs->size().width,
-                             pairs->size().height)};
+    return Error{
+        ErrorCode::kBadInput,
+        fmt::format("cannot record {} with this rig: it is of pictures of {}x{}, these have {}x{}", options.left,
+                    setup.rig->left.size.width, setup.rig->left.size.height, pairs->size().width, pairs->size().height)};
   DUO_TRY_ASSIGN(Recorder recorder, Recorder::open(options.output, setup));
   DUO_TRY_ASSIGN(const Summary summary, record_all(*pairs, recorder, options, app));
   if (recorder.pairs() == 0)

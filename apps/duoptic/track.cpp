@@ -27,7 +27,8 @@ constexpr char kFooter[] =
     "\\\n"
     "      --select2 hand=.. --select2 elbow=.. --select2 shoulder=.. -o arms.jsonl --video arms.mp4\n"
     "  duoptic track clip.mkv --select hand=.. --select elbow=.. --select shoulder=.. --realtime --vmc 127.0.0.1:39539 \\\n"
-    "      --bvh arm.bvh --csv arm.csv -o arm.jsonl                       a recording, with its own rig, to an avatar and to files";
+    "      --bvh arm.bvh --csv arm.csv -o arm.jsonl                       a recording, with its own rig, to an avatar and to "
+    "files";
 
 struct Options {
   std::string left, right, rig;
@@ -127,8 +128,8 @@ Result<Summary> track_all(ArmRun& run, const std::vector<ArmSelection>& arms, co
 std::string text_of(const Summary& summary, double seconds, const ArmRun& run, const Options& options) {
   const std::size_t frames = summary.engine_ms.size();
   return fmt::format(
-      "{} frame{} of {}x{} in {:.1f} s = {:.1f} frames/s; engine {:.1f} ms, tracker {:.1f} ms ({}, {}, {} thread{}){}{}", frames,
-      frames == 1 ? "" : "s", run.recording().size.width, run.recording().size.height, seconds,
+      "{} frame{} of {}x{} in {:.1f} s = {:.1f} frames/s; engine {:.1f} ms, tracker {:.1f} ms ({}, {}, {} thread{}){}{}",
+      frames, frames == 1 ? "" : "s", run.recording().size.width, run.recording().size.height, seconds,
       static_cast<double>(frames) / seconds, median(summary.engine_ms), median(summary.tracker_ms), run.recording().engine,
       run.recording().tracker_preset, options.arm.engine.threads, options.arm.engine.threads == 1 ? "" : "s",
       run.frames().dropped() > 0 ? fmt::format("; {} pairs dropped", run.frames().dropped()) : "", summary.dropped);
@@ -178,7 +179,8 @@ Command add(CLI::App& app) {
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
       ->capture_default_str();
   options->sinks.add_to(*sub);
-  sub->add_flag("--realtime", options->realtime, "Take files at the pace of their capture times, as if live: late pairs are dropped");
+  sub->add_flag("--realtime", options->realtime,
+                "Take files at the pace of their capture times, as if live: late pairs are dropped");
   options->arm.add_to(*sub);
   sub->add_flag("--stats", options->stats, "Add times to each line and print a summary of them on stderr");
   sub->add_flag("--quiet", options->quiet, "No progress and no summary");

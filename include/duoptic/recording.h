@@ -43,7 +43,7 @@ class Recorder {
   Result<void> finish();
 
   std::int64_t pairs() const;
-  std::int64_t bytes() const;   // of the file, so far
+  std::int64_t bytes() const;  // of the file, so far
   std::string codecs() const;  // of left and right, like "MJPEG, MJPEG"
 
  private:

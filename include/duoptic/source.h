@@ -65,7 +65,8 @@ class PairSource {
 /// as two video tracks, which is a recording and may bring its rig, or side by side. A recording that was killed or cut gives
 /// its whole pairs and then Next::kCut.
 ///
-/// Errors  those of open_source(); a recording's rig that cannot be one; sizes differ; one is a picture and the other a video; odd width side by side
+/// Errors  those of open_source(); a recording's rig that cannot be one; sizes differ; one is a picture and the other a video;
+/// odd width side by side
 Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right);
 
 /// The pairs of files at the pace of their capture times, as if they came live: one that is late is dropped when the next is

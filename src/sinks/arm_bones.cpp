@@ -15,18 +15,14 @@ std::optional<Vec3> across(Vec3 v, Vec3 along) {
 }
 
 /// The rotation that takes (x, 0, 0) to `bone` and y to `hinge`, which stand upright on each other.
-Mat3 turn_to(double x, Vec3 bone, Vec3 hinge) {
-  return transposed(Mat3::from_rows(x * bone, hinge, x * cross(bone, hinge)));
-}
+Mat3 turn_to(double x, Vec3 bone, Vec3 hinge) { return transposed(Mat3::from_rows(x * bone, hinge, x * cross(bone, hinge))); }
 
 }  // namespace
 
 // Who looks along z with y up has the left hand at +x when the axes are right-handed, at -x when they are left-handed.
 double rest_x(Side side, bool left_handed) { return (side == Side::kLeft) != left_handed ? 1 : -1; }
 
-Side side_of(Side first, std::size_t arm) {
-  return arm % 2 == 0 ? first : first == Side::kRight ? Side::kLeft : Side::kRight;
-}
+Side side_of(Side first, std::size_t arm) { return arm % 2 == 0 ? first : first == Side::kRight ? Side::kLeft : Side::kRight; }
 std::string_view side_name(Side side) { return side == Side::kLeft ? "Left" : "Right"; }
 
 std::optional<BoneTurns> ArmTurner::turn(Vec3 shoulder, Vec3 elbow, Vec3 hand) {

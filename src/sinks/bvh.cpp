@@ -117,7 +117,8 @@ class Bvh final : public Sink {
 
   Result<void> write(const TrackedFrame& frame) override {
     if (tracks_.empty()) start_s_ = frame.t_s;
-    while (tracks_.size() < std::max<std::size_t>(frame.arms.size(), 1)) tracks_.emplace_back(side_of(first_arm_, tracks_.size()));
+    while (tracks_.size() < std::max<std::size_t>(frame.arms.size(), 1))
+      tracks_.emplace_back(side_of(first_arm_, tracks_.size()));
     // A live source may have left frames out; the file has one each frame_s.
     const auto slot = static_cast<std::size_t>(std::max<long long>(std::llround((frame.t_s - start_s_) / frame_s_), 0));
     count_ = std::max(count_, slot + 1);

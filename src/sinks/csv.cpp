@@ -38,7 +38,8 @@ class Csv final : public Sink {
       const Vec3 p_m = axes_from_rig_ * joint.p_in_rig_m;
       out = fmt::format(",{},{},{}", number(p_m.x, 4, ""), number(p_m.y, 4, ""), number(p_m.z, 4, ""));
     }
-    return out + fmt::format(",{},{},{}", state_text(joint.state), number(joint.sigma_m, 4, ""), number(joint.confidence, 3, ""));
+    return out +
+           fmt::format(",{},{},{}", state_text(joint.state), number(joint.sigma_m, 4, ""), number(joint.confidence, 3, ""));
   }
 
   PartialFile file_;

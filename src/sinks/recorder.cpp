@@ -161,9 +161,10 @@ Result<Recorder> Recorder::open(const std::filesystem::path& path, const Recorde
                  fmt::format("cannot write '{}': it is a folder or device; give the name of a file", path.string())};
   const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | (setup.replace ? O_TRUNC : O_EXCL), 0666);
   if (fd < 0 && errno == EEXIST)
-    return Error{ErrorCode::kWriteFailed, fmt::format("cannot record into '{}': a file of that name is there, and what it holds "
-                                                      "may not be had again; choose another name or replace it by --force",
-                                                      path.string())};
+    return Error{ErrorCode::kWriteFailed,
+                 fmt::format("cannot record into '{}': a file of that name is there, and what it holds "
+                             "may not be had again; choose another name or replace it by --force",
+                             path.string())};
   if (fd < 0) return write_error(path, errno);
   return Recorder(std::make_unique<State>(path, setup, fd));
 }

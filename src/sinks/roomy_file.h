@@ -26,8 +26,7 @@ class RoomyFile {
   /// Makes sure that the first `end` bytes can be written; 0, or the errno that says why not.
   int reserve(std::int64_t end) {
     rlimit limit{};
-    if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
-        static_cast<rlim_t>(end) > limit.rlim_cur)
+    if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && static_cast<rlim_t>(end) > limit.rlim_cur)
       return EFBIG;
     if (end <= reserved_) return 0;
     constexpr std::int64_t kStep = 4 << 20;

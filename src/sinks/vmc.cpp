@@ -47,7 +47,8 @@ class Vmc final : public Sink {
   }
 
   /// Position in the parent bone (metres), rotation from the T-pose in the parent's axes.
-  static void add_transform(const OscBundle& bundle, const char* path, const std::string& name, Vec3 p_m, const Mat3& rotation) {
+  static void add_transform(const OscBundle& bundle, const char* path, const std::string& name, Vec3 p_m,
+                            const Mat3& rotation) {
     lo_message message = lo_message_new();
     lo_message_add_string(message, name.c_str());
     for (const double v_m : {p_m.x, p_m.y, p_m.z}) lo_message_add_float(message, static_cast<float>(v_m));
@@ -56,8 +57,8 @@ class Vmc final : public Sink {
   }
 
   static void add_arm(const OscBundle& bundle, const ArmPose& arm, Side side, ArmTurner& turner) {
-    const Vec3 shoulder = avatar_from_rig(arm[Joint::kShoulder].p_in_rig_m), elbow = avatar_from_rig(arm[Joint::kElbow].p_in_rig_m),
-               hand = avatar_from_rig(arm[Joint::kHand].p_in_rig_m);
+    const Vec3 shoulder = avatar_from_rig(arm[Joint::kShoulder].p_in_rig_m),
+               elbow = avatar_from_rig(arm[Joint::kElbow].p_in_rig_m), hand = avatar_from_rig(arm[Joint::kHand].p_in_rig_m);
     const auto turns = turner.turn(shoulder, elbow, hand);
     if (!turns) return;
     const double x = rest_x(side, true);

@@ -112,8 +112,8 @@ Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left
       DUO_TRY_ASSIGN(left_source, open_video(left, 0));
       DUO_TRY_ASSIGN(auto right_source, open_video(left, 1));
       DUO_TRY(check_sizes(*left_source, *right_source, left, left));
-      return std::unique_ptr<PairSource>(std::make_unique<TwoFiles>(std::move(left_source), std::move(right_source),
-                                                                    left.string(), std::move(*recording)));
+      return std::unique_ptr<PairSource>(
+          std::make_unique<TwoFiles>(std::move(left_source), std::move(right_source), left.string(), std::move(*recording)));
     }
     if (size.width % 2 != 0)
       return Error{ErrorCode::kBadInput,

@@ -79,7 +79,8 @@ struct Tally {
     if (view.pictures++ == 0) first = last;
   }
   void finish() {
-    if (view.pictures > 0) view.missing = std::max<std::int64_t>(static_cast<std::int64_t>(last - first) + 1 - view.pictures, 0);
+    if (view.pictures > 0)
+      view.missing = std::max<std::int64_t>(static_cast<std::int64_t>(last - first) + 1 - view.pictures, 0);
   }
 };
 
@@ -129,9 +130,10 @@ Result<RecordingReport> inspect_recording(const std::filesystem::path& path) {
   report.pairs = std::min(report.left.pictures, report.right.pictures);
   fill_times(tally[0], tally[1], report);
   const double frame_s = static_cast<double>(std::atoll(tracks.tag(CaptureMark::kFrameTag).c_str())) * 1e-9;
-  report.cut = (read < 0 && read != AVERROR_EOF) || report.left.pictures != report.right.pictures ||
-               (tracks.ours() && !tracks.finished()) ||
-               (tracks.ours() && report.length_s + 2 * frame_s < static_cast<double>(tracks.container->duration) / AV_TIME_BASE);
+  report.cut =
+      (read < 0 && read != AVERROR_EOF) || report.left.pictures != report.right.pictures ||
+      (tracks.ours() && !tracks.finished()) ||
+      (tracks.ours() && report.length_s + 2 * frame_s < static_cast<double>(tracks.container->duration) / AV_TIME_BASE);
   return report;
 }
 

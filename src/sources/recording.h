@@ -16,7 +16,7 @@ namespace duo {
 
 /// A Matroska file and its two video tracks, opened without a look at its pictures.
 struct TwoTracks {
-  av::Container container;              // empty where there is no such file
+  av::Container container;             // empty where there is no such file
   std::vector<const AVStream*> views;  // left, right
 
   std::string tag(const char* name) const;

@@ -58,11 +58,11 @@ class VideoFile final : public Source {
   av::ToRgb to_rgb_;
   int stream_ = -1;
   Size size_;
-  std::int64_t announced_ = 0;  // packets; 0 = not announced
-  std::int64_t packets_ = 0;    // whole ones read so far
-  TimeNs shown_ns_ = 0;         // time of the last picture decoded
+  std::int64_t announced_ = 0;    // packets; 0 = not announced
+  std::int64_t packets_ = 0;      // whole ones read so far
+  TimeNs shown_ns_ = 0;           // time of the last picture decoded
   TimeNs recorded_frame_ns_ = 0;  // of our own recordings: from picture to picture; 0: not one
-  TimeNs end_ns_ = 0;           // where the last packet ends
+  TimeNs end_ns_ = 0;             // where the last packet ends
   std::uint64_t given_ = 0;
   bool drained_ = false;  // the decoder was told that nothing follows
   bool cut_ = false;
