@@ -54,6 +54,7 @@ Result<void> Recorder::State::add_view(const Picture& first, const char* title) 
   stream->avg_frame_rate = av_d2q(1 / setup.frame_s, kFinest);
   stream->time_base = kMs;
   av_dict_set(&stream->metadata, "title", title, 0);
+  if (views.empty()) stream->disposition = AV_DISPOSITION_DEFAULT;  // the one that players show first
   views.push_back(std::move(view));
   return {};
 }
