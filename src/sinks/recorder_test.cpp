@@ -167,6 +167,10 @@ TEST(Recorder, CutAnywhereKeepsItsWholePairs) {
         ++refused;
         continue;
       }
+      const auto report = inspect_recording(dir / "cut.mkv");
+      ASSERT_TRUE(report) << report.error().what;
+      EXPECT_EQ(report->cut, cut.end == Next::kCut) << report->pairs;
+      EXPECT_GE(report->pairs, static_cast<std::int64_t>(written));
       ASSERT_GE(cut.pairs.size(), written);
       ASSERT_LE(cut.pairs.size(), written + 1);
       EXPECT_TRUE(cut.end == Next::kCut || cut.pairs.size() == kPairs);

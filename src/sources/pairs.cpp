@@ -80,6 +80,7 @@ class SideBySide final : public PairSource {
   void take_half(int x, Picture& into) const {
     if (into.pixels.size() != size()) into.pixels = Image<Rgb8>(size());
     for (int y = 0; y < size().height; ++y) std::copy_n(picture_.pixels.row(y) + x, size().width, into.pixels.row(y));
+    into.jpeg.clear();
     into.t_ns = picture_.t_ns;
     into.sequence = picture_.sequence;
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,8 @@
 #include "sources/libav.h"
 
 namespace duo {
+
+TimeNs TwoTracks::frame_ns() const { return std::atoll(tag(CaptureMark::kFrameTag).c_str()); }
 
 std::string TwoTracks::tag(const char* name) const {
   const AVDictionaryEntry* entry = av_dict_get(container->metadata, name, nullptr, 0);
@@ -55,26 +58,33 @@ namespace {
 
 constexpr AVRational kNs = {1, 1'000'000'000};
 
+/// True when a picture of a file of ours at `last_ns` is the last that the file had when it was finished: its length is up to
+/// where that picture ends, and a free-running right camera is half a picture off.
+bool is_last(const TwoTracks& tracks, TimeNs last_ns) {
+  return last_ns + tracks.frame_ns() * 7 / 4 > tracks.container->duration * 1000;
+}
+
 /// Each picture has an entry in the index, which libav reads at the first search; none when it was cut off.
 std::int64_t pairs_in_index(const TwoTracks& tracks) {
-  if (!tracks.ours() || !tracks.finished() || av_seek_frame(tracks.container.get(), tracks.views[0]->index, 0, 0) < 0) return 0;
+  if (!tracks.ours() || !tracks.finished()) return 0;
   AVStream* left = tracks.container->streams[tracks.views[0]->index];
+  if (av_seek_frame(tracks.container.get(), left->index, 0, 0) < 0) return 0;
   const int entries = avformat_index_get_entries_count(left);
   const AVIndexEntry* last = entries > 0 ? avformat_index_get_entry(left, entries - 1) : nullptr;
-  const std::int64_t frame_ns = std::atoll(tracks.tag(CaptureMark::kFrameTag).c_str());
-  const std::int64_t end_ns = last != nullptr ? av_rescale_q(last->timestamp, left->time_base, kNs) : 0;
-  return last != nullptr && end_ns + 2 * frame_ns > tracks.container->duration * 1000 ? entries : 0;
+  return last != nullptr && is_last(tracks, av_rescale_q(last->timestamp, left->time_base, kNs)) ? entries : 0;
 }
 
 /// One track's pictures as they pass by.
 struct Tally {
   RecordedView view;
   std::vector<TimeNs> t_ns;
+  TimeNs last_ns = 0;                 // of the last block
   std::uint64_t first = 0, last = 0;  // numbers that the camera gave
 
   void add(const AVPacket& packet, AVRational base) {
     const auto mark = CaptureMark::of(packet);
-    t_ns.push_back(mark ? mark->t_ns : packet.pts == AV_NOPTS_VALUE ? 0 : av_rescale_q(packet.pts, base, kNs));
+    last_ns = packet.pts == AV_NOPTS_VALUE ? 0 : av_rescale_q(packet.pts, base, kNs);
+    t_ns.push_back(mark ? mark->t_ns : last_ns);
     last = mark ? mark->sequence : static_cast<std::uint64_t>(view.pictures);
     if (view.pictures++ == 0) first = last;
   }
@@ -129,11 +139,8 @@ Result<RecordingReport> inspect_recording(const std::filesystem::path& path) {
   report.right = tally[1].view;
   report.pairs = std::min(report.left.pictures, report.right.pictures);
   fill_times(tally[0], tally[1], report);
-  const double frame_s = static_cast<double>(std::atoll(tracks.tag(CaptureMark::kFrameTag).c_str())) * 1e-9;
-  report.cut =
-      (read < 0 && read != AVERROR_EOF) || report.left.pictures != report.right.pictures ||
-      (tracks.ours() && !tracks.finished()) ||
-      (tracks.ours() && report.length_s + 2 * frame_s < static_cast<double>(tracks.container->duration) / AV_TIME_BASE);
+  const bool whole = !tracks.ours() || (tracks.finished() && is_last(tracks, std::max(tally[0].last_ns, tally[1].last_ns)));
+  report.cut = !whole || (read < 0 && read != AVERROR_EOF) || report.left.pictures != report.right.pictures;
   return report;
 }
 

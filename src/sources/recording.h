@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/capture_mark.h"
+#include "duoptic/frame.h"
 #include "duoptic/result.h"
 #include "duoptic/rig.h"
 #include "sources/libav.h"
@@ -20,7 +21,8 @@ struct TwoTracks {
   std::vector<const AVStream*> views;  // left, right
 
   std::string tag(const char* name) const;
-  bool ours() const { return !tag(CaptureMark::kFrameTag).empty(); }
+  TimeNs frame_ns() const;  // from picture to picture; 0 in files that are not ours
+  bool ours() const { return frame_ns() > 0; }
   /// A file of ours has a length once it is finished.
   bool finished() const { return container->duration > 0; }
   /// Errors  one that cannot be
