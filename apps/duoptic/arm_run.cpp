@@ -35,10 +35,9 @@ void ArmOptions::add_to(CLI::App& app) {
       ->capture_default_str();
 }
 
-Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, const Rig& rig, const ArmOptions& options,
-                            std::int64_t first) {
+Result<ArmRun> ArmRun::open(std::unique_ptr<PairSource> pairs, std::vector<std::string> sources, const Rig& rig,
+                            const ArmOptions& options, std::int64_t first) {
   ArmRun run;
-  DUO_TRY_ASSIGN(auto pairs, open_pairs(left, right, {.size = rig.left.size}));
   DUO_TRY_ASSIGN(run.engine_, make_engine(options.engine.engine, options.engine.threads));
   Setup setup = options.engine.setup();
   setup.size = pairs->size();
@@ -50,8 +49,7 @@ Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, c
   const double frame_s = pairs->frame_s();
   DUO_TRY(run.tracker_->prepare({rig, *run.engine_->rectified(), frame_s}));
 
-  run.recording_.sources = {left};
-  if (!right.empty()) run.recording_.sources.push_back(right);
+  run.recording_.sources = std::move(sources);
   run.recording_.engine = run.engine_->name();
   run.recording_.matcher = options.engine.matcher;
   run.recording_.matcher_preset = options.engine.preset;

@@ -26,10 +26,10 @@ class ArmRun {
  public:
   static constexpr double kNearest_m = 0.5;
 
-  /// Pairs before number `first` are passed over.
-  /// Errors  those of open_pairs(), Engine::prepare() and Tracker::prepare()
-  static Result<ArmRun> open(const std::string& left, const std::string& right, const Rig& rig, const ArmOptions& options,
-                             std::int64_t first = 0);
+  /// Pairs before number `first` are passed over; `sources` names them for the sinks.
+  /// Errors  those of Engine::prepare() and Tracker::prepare()
+  static Result<ArmRun> open(std::unique_ptr<PairSource> pairs, std::vector<std::string> sources, const Rig& rig,
+                             const ArmOptions& options, std::int64_t first = 0);
 
   Result<Next> next() { return frames_->next(); }
   const Frame& frame() const { return *frames_->last().frame; }

@@ -112,6 +112,8 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   }
   DUO_TRY_ASSIGN(const auto pairs,
                  open_pairs(options.left, options.right, setup.rig ? CameraWish{.size = setup.rig->left.size} : CameraWish{}));
+  if (!setup.rig) setup.rig = pairs->rig();
+  if (options.near_m > 0 && !setup.rig) throw CLI::RequiredError("--rig");
   setup.size = pairs->size();
   setup.max_disparity = options.max_disparity;
   if (setup.rig) {
@@ -135,10 +137,13 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("depth", "Disparity, depth and points of pictures or videos");
   const auto options = std::make_shared<Options>();
-  sub->add_option("LEFT", options->left, "Picture or video of the left camera, or of both side by side")->required();
+  sub->add_option("LEFT", options->left, "Picture or video of the left camera, a recording, or both views side by side")
+      ->required();
   sub->add_option("RIGHT", options->right, "Picture or video of the right camera");
-  CLI::Option* rig = sub->add_option(
-      "--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); without it the pair is taken as rectified");
+  sub->add_option(
+      "--rig", options->rig,
+      "Calibration (our JSON, OpenCV's YAML or JSON); without it, and in no recording that has one, the pair is taken "
+      "as rectified");
   CLI::Option* most = sub->add_option("--max-disparity", options->max_disparity, "Searches 0 .. N-1 px")
                           ->type_name("N")
                           ->check(CLI::Range(1, Engine::kMaxDisparity))
@@ -146,7 +151,6 @@ Command add(CLI::App& app) {
   sub->add_option("--near", options->near_m, "Searches as far as something at this distance needs, by the rig")
       ->type_name("METRES")
       ->check(CLI::PositiveNumber)
-      ->needs(rig)
       ->excludes(most);
   sub->add_option("-o,--output", options->folder, "Folder for the results")->type_name("DIR")->capture_default_str();
   sub->add_option("--every", options->every, "Of a video, only every N-th frame")

@@ -32,6 +32,7 @@ class FrameAhead {
   }
 
   std::int64_t count() const { return count_; }
+  bool live() const { return source_->live(); }
   /// As PairSource::next(), into last(); not to be called again after the end or an error.
   Result<Next> next() { return frames_->next(last_); }
   /// Lives until the next next().

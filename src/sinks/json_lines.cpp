@@ -1,25 +1,17 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/file.h"
 #include "duoptic/sink.h"
+#include "sinks/joint_text.h"
 
 namespace duo {
 namespace {
 
 constexpr int kVersion = 1;
-constexpr const char* kStates[] = {"seen", "inferred", "lost"};
-
-/// A number with `digits` decimals, so that every run prints the same; never "-0.00".
-std::string number(double value, int digits) {
-  if (!std::isfinite(value)) return "null";  // JSON knows no other way
-  const std::string text = fmt::format("{:.{}f}", value, digits);
-  return text[0] == '-' && text.find_first_not_of("-0.") == std::string::npos ? text.substr(1) : text;
-}
 
 /// Quoted; bytes that are no UTF-8 (names of files may be anything) become U+FFFD.
 std::string quoted(const std::string& text) {
@@ -47,7 +39,7 @@ std::string joint_text(const Keypoint& k) {
             : "null";
   const std::string uv = known ? fmt::format("[{},{}]", number(k.u_px, 2), number(k.v_px, 2)) : "null";
   return fmt::format(R"({{"p_in_rig_m":{},"uv_left_px":{},"state":"{}","confidence":{},"sigma_m":{}}})", p, uv,
-                     kStates[static_cast<int>(k.state)], number(k.confidence, 3), number(k.sigma_m, 4));
+                     state_text(k.state), number(k.confidence, 3), number(k.sigma_m, 4));
 }
 
 std::string frame_line(const TrackedFrame& frame, bool live) {
