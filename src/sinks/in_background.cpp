@@ -25,12 +25,13 @@ struct KeptFrame {
     t_s = from.t_s;
     arms = from.arms;
     times = from.times;
-    if (!pictures) return;
-    copy(from.left.pixels, left.pixels);
     left.t_ns = from.left.t_ns;
     left.sequence = from.left.sequence;
     frame.sequence = from.frame.sequence;
     frame.t_ns = from.frame.t_ns;
+    frame.skew_ns = from.frame.skew_ns;
+    if (!pictures) return;
+    copy(from.left.pixels, left.pixels);
     copy(from.frame.color, frame.color);
     copy(from.frame.disparity.d_q4, frame.disparity.d_q4);
     copy(from.frame.disparity.origin, frame.disparity.origin);

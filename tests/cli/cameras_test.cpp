@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <sstream>
 
 #include "duoptic/rig.h"
@@ -33,20 +34,25 @@ std::string yuyv(const Image<Rgb8>& picture) {
 
 class Cameras : public ::testing::Test {
  protected:
-  void SetUp() override {
+  static void SetUpTestSuite() {
+    shared_ = std::make_unique<TempFolder>();
+    const TempFolder& folder = *shared_;
     const SyntheticPair room = render_synthetic({.size = {320, 240}}, 2);
-    put(folder_ / "left.yuyv", yuyv(room.pair.left.pixels));
-    put(folder_ / "right.yuyv", yuyv(room.pair.right.pixels));
-    ASSERT_TRUE(save_rig(room.rig, folder_ / "rig.json"));
-    ASSERT_TRUE(save_rig(synthetic_rig({.size = {1280, 720}}), folder_ / "large.json"));
+    put(folder / "left.yuyv", yuyv(room.pair.left.pixels));
+    put(folder / "right.yuyv", yuyv(room.pair.right.pixels));
+    ASSERT_TRUE(save_rig(room.rig, folder / "rig.json"));
+    ASSERT_TRUE(save_rig(synthetic_rig({.size = {1280, 720}}), folder / "large.json"));
   }
+
+  static void TearDownTestSuite() { shared_.reset(); }
 
   Ended run(const std::string& arguments) { return test::run_tool(folder_ / "", arguments, kPreload); }
 
   // A sanitizer's run time that is a library wants to be the first one; ours may come before it, it replaces nothing of it.
   static constexpr char kPreload[] =
       "DUO_FAKE_FOLDER=. ASAN_OPTIONS=$ASAN_OPTIONS:verify_asan_link_order=0 LD_PRELOAD='" DUO_FAKE_CAMERAS "'";
-  TempFolder folder_;
+  inline static std::unique_ptr<TempFolder> shared_;
+  const TempFolder& folder_ = *shared_;
 };
 
 TEST_F(Cameras, AreListedWithWhichGoTogether) {
