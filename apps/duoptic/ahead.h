@@ -44,6 +44,13 @@ class Ahead {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return made_.has_value(); });
   }
+  /// Before the end: calls `change` with what is ready, null when that is nothing, while nothing goes on in the thread.
+  template <class F>
+  void amend(F&& change) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return made_.has_value(); });
+    change(*made_ && **made_ == Next::kPicture ? &ahead_ : nullptr);
+  }
 
  private:
   void make_all() {

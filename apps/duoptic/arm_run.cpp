@@ -35,14 +35,19 @@ void ArmOptions::add_to(CLI::App& app) {
       ->capture_default_str();
 }
 
-Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, const Rig& rig, const ArmOptions& options,
-                            std::int64_t first) {
+Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, const std::optional<Rig>& given,
+                            const ArmOptions& options, std::int64_t first) {
   ArmRun run;
   DUO_TRY_ASSIGN(auto pairs, open_pairs(left, right));
   DUO_TRY_ASSIGN(run.engine_, make_engine(options.engine.engine, options.engine.threads));
-  Setup setup = options.engine.setup();
+  Setup& setup = run.setup_;
+  setup = options.engine.setup();
   setup.size = pairs->size();
-  setup.rig = rig;
+  setup.rig = given ? given : pairs->rig();
+  if (!setup.rig)
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("cannot find joints in space with {}: it does not bring a rig; give one with --rig", left)};
+  const Rig& rig = *setup.rig;
   setup.max_disparity = options.max_disparity > 0 ? options.max_disparity : disparity_at(kNearest_m, rig);
   setup.wants = {.color = true, .depth = false};
   DUO_TRY(run.engine_->prepare(setup));
@@ -62,6 +67,14 @@ Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, c
   run.recording_.frame_s = frame_s;
   run.frames_ = std::make_unique<FrameAhead>(std::move(pairs), *run.engine_, first);
   return run;
+}
+
+Result<void> ArmRun::set(const std::vector<std::pair<std::string, double>>& parameters) {
+  Setup setup = setup_;
+  setup.parameters = parameters;
+  DUO_TRY(frames_->prepare(setup));
+  setup_ = std::move(setup);
+  return {};
 }
 
 const std::vector<ArmPose>& ArmRun::track() {

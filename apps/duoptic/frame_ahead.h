@@ -38,11 +38,25 @@ class FrameAhead {
   const Matched& last() const { return last_; }
   /// Before the end: until the next frame is ready; matching then rests.
   void wait() { frames_->wait(); }
+  /// Before the end: another setup for the engine. The last frame and the one that is ready are made anew.
+  ///
+  /// Errors  those of Engine::prepare(); then all is as it was
+  Result<void> prepare(const Setup& setup) {
+    Result<void> prepared;
+    frames_->amend([&](Matched* ahead) {
+      prepared = engine_.prepare(setup);
+      if (!prepared) return;
+      if (last_.frame != nullptr) make_frame(last_);
+      if (ahead != nullptr) make_frame(*ahead);
+    });
+    return prepared;
+  }
 
   TimeNs start_ns() const { return start_ns_; }  // of the first pair, once next() gave one
   /// Pairs that were read before the end, and what PairSource::warning() says then.
   std::int64_t read() const { return read_; }
   std::string warning() const { return source_->warning(); }
+  const PairSource& source() const { return *source_; }
 
  private:
   Result<Next> match(Matched& into) {
@@ -51,11 +65,14 @@ class FrameAhead {
       if (next != Next::kPicture) return next;
       if (read_ == 0) start_ns_ = into.pair.left.t_ns;
     } while (read_++ < first_);
-    into.engine_ms = timed([&] {
-                       engine_.submit(into.pair);
-                       into.frame = &engine_.collect();
-                     }).wall_ms;
+    make_frame(into);
     return Next::kPicture;
+  }
+  void make_frame(Matched& of) {
+    of.engine_ms = timed([&] {
+                     engine_.submit(of.pair);
+                     of.frame = &engine_.collect();
+                   }).wall_ms;
   }
 
   std::unique_ptr<PairSource> source_;

@@ -55,9 +55,13 @@ int run(int argc, char** argv) {
   CLI::App app("Two cameras in, dense depth out.", "duoptic");
   app.require_subcommand(1);
   app.footer(kFooter);
-  const std::vector<Command> commands = {depth::add(app), track::add(app),  eval::add(app),  bench::add(app),
-                                         demo::add(app),  synth::add(app),  board::add(app), calibrate::add(app),
-                                         rig::add(app),   version::add(app)};
+  const std::vector<Command> commands = {depth::add(app),  track::add(app),     eval::add(app),
+                                         bench::add(app),  demo::add(app),      synth::add(app),
+                                         board::add(app),  calibrate::add(app), rig::add(app),
+#ifdef DUO_VIEWER
+                                         view::add(app),
+#endif
+                                         version::add(app)};
   const auto chosen = [&]() -> const Command* {
     for (const Command& command : commands)
       if (command.app->parsed()) return &command;
