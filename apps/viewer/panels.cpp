@@ -315,7 +315,7 @@ void Panels::draw_region(const Cell& cell) {
     list.AddRectFilled({x, cell.caption.y + 6 * scale_}, {x + 16 * scale_, cell.caption.y + 20 * scale_},
                        IM_COL32(c.r, c.g, c.b, 255), 3 * scale_);
     list.AddText({x + 22 * scale_, cell.caption.y + 5 * scale_}, kText, name.c_str());
-    x += 40 * scale_ + ImGui::CalcTextSize(name.c_str()).x;
+    x += std::min(40 * scale_ + ImGui::CalcTextSize(name.c_str()).x, cell.caption_width / 3);
   }
 }
 

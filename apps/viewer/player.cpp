@@ -121,7 +121,9 @@ void Player::select(const std::vector<ArmSelection>& arms) {
       const std::lock_guard lock(mutex_);
       status_.problem.clear();
     }
+    const bool first = arms_.empty();
     arms_ = run_->track();
+    if (first) write_line(run_->tracked(arms_));  // else this frame has its line already
     show(0);
   });
 }

@@ -146,8 +146,9 @@ void Sidebar::put_playback(Player& player, const Shown* shown, const PlayerStatu
 void Sidebar::put_joints(const Shown* shown) const {
   if (shown == nullptr || shown->arms.empty()) return;
   title("Joints, metres");
-  if (!ImGui::BeginTable("joints", 6, ImGuiTableFlags_SizingStretchProp)) return;
-  for (const char* name : {"", "", "x", "y", "z", "\u00b1 cm"}) ImGui::TableSetupColumn(name);
+  if (!ImGui::BeginTable("joints", 6)) return;
+  const std::pair<const char*, float> columns[] = {{"", 1.35f}, {"", 1.3f}, {"x", 1}, {"y", 1}, {"z", 1}, {"\u00b1 cm", 0.9f}};
+  for (const auto& [name, share] : columns) ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, share);
   ImGui::TableHeadersRow();
   for (const ArmPose& arm : shown->arms)
     for (std::size_t j = 0; j < kArmJoints; ++j) {
@@ -156,7 +157,7 @@ void Sidebar::put_joints(const Shown* shown) const {
       ImGui::TableNextColumn();
       ImGui::TextUnformatted(kJointNames[j].data());
       ImGui::TableNextColumn();
-      colored(color_of(k.state), word_of(k.state));
+      ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(color_of(k.state)), "%s", word_of(k.state));
       if (k.state == JointState::kLost) continue;
       for (const double value : {k.p_in_rig_m.x, k.p_in_rig_m.y, k.p_in_rig_m.z}) {
         ImGui::TableNextColumn();

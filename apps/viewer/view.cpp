@@ -31,6 +31,7 @@ struct Options {
   PlayerOptions player;
   std::string rig, screenshot;
   std::int64_t after = 0;
+  bool paused = false;
 };
 
 /// Ctrl-C and the like close the window as its user would: lines are completed.
@@ -54,7 +55,10 @@ class Viewer {
   /// Until the window is closed.
   Result<void> run() {
     constexpr double kIdle_s = 0.1;
-    player_.play(true);
+    if (options_.paused)
+      player_.step();
+    else
+      player_.play(true);
     while (!window_.closing() && interrupted == 0 && !done_) {
       Window::wait(kIdle_s);
       DUO_TRY_ASSIGN(const bool visible, window_.begin());
@@ -116,18 +120,16 @@ class Viewer {
   }
 
   void take_keys() {
-    if (ImGui::GetIO().WantTextInput) return;
-    const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
-    const PlayerStatus status = player_.status();
-    if (pressed(GLFW_KEY_SPACE)) player_.play(status.state != PlayState::kPlaying);
-    if (pressed(GLFW_KEY_RIGHT)) {
-      player_.play(false);
-      player_.step();
+    for (const int key : window_.keys()) {
+      const PlayState state = player_.status().state;
+      if (key == GLFW_KEY_SPACE) player_.play(state != PlayState::kPlaying);
+      if (key == GLFW_KEY_RIGHT && state == PlayState::kPlaying) player_.play(false);
+      if (key == GLFW_KEY_RIGHT) player_.step();
+      if (key == GLFW_KEY_BACKSPACE && clicks_.wanted()) clicks_.undo();
+      if (key == GLFW_KEY_R) player_.restart();
+      if (key == GLFW_KEY_F12) window_.want_screenshot();
+      if (key == GLFW_KEY_Q) done_ = true;
     }
-    if (pressed(GLFW_KEY_BACKSPACE) && clicks_.wanted()) clicks_.undo();
-    if (pressed(GLFW_KEY_R)) player_.restart();
-    if (pressed(GLFW_KEY_F12)) window_.want_screenshot();
-    if (pressed(GLFW_KEY_Q)) done_ = true;
   }
 
   Result<void> keep_screenshot() {
@@ -180,6 +182,7 @@ Command add(CLI::App& app) {
   sub->add_option("RIGHT", options->player.right, "Video of the right camera");
   sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); left out: the source's own");
   sub->add_flag("--loop", options->player.loop, "Start again at the end of a file");
+  sub->add_flag("--paused", options->paused, "Wait at the first frame");
   sub->add_option("-o,--output", options->player.lines, "File for the JSON lines of tracked frames")->type_name("FILE");
   CLI::Option* shot =
       sub->add_option("--screenshot", options->screenshot, "Write a PNG of the window, then close it")->type_name("FILE");

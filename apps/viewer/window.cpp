@@ -67,6 +67,12 @@ void Window::wait(double seconds) { glfwWaitEventsTimeout(seconds); }
 void Window::wake() { glfwPostEmptyEvent(); }
 bool Window::closing() const { return glfwWindowShouldClose(window_) != GLFW_FALSE; }
 
+std::vector<int> Window::keys() {
+  std::vector<int> out = std::exchange(keys_, {});
+  if (ImGui::GetIO().WantTextInput) out.clear();
+  return out;
+}
+
 void Window::set_title(const std::string& title) {
   if (title == title_) return;
   title_ = title;
@@ -83,6 +89,11 @@ Result<void> Window::create_glfw(const std::string& title, Size size) {
   title_ = title;
   window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
   if (window_ == nullptr) return no_window();
+  // ImGui 1.86 loses a key that is pressed and released between two frames; it passes on what it hears.
+  glfwSetWindowUserPointer(window_, this);
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+    if (action == GLFW_PRESS) static_cast<Window*>(glfwGetWindowUserPointer(window))->keys_.push_back(key);
+  });
   glfwSetWindowSizeLimits(window_, 640, 420, GLFW_DONT_CARE, GLFW_DONT_CARE);
   float across = 1, down = 1;
   glfwGetWindowContentScale(window_, &across, &down);

@@ -31,6 +31,8 @@ class Window {
   static void wake();
 
   bool closing() const;
+  /// What was pressed since the last call, as GLFW_KEY_*; without those that ImGui's text fields take.
+  std::vector<int> keys();
   void set_title(const std::string& title);
   /// How much larger than 96 dots per inch letters and lines shall be.
   float scale() const { return scale_; }
@@ -71,6 +73,7 @@ class Window {
   GLFWwindow* window_ = nullptr;
   float scale_ = 1;
   std::string title_;
+  std::vector<int> keys_;
   std::unique_ptr<Gpu> gpu_;
   VkSurfaceFormatKHR format_ = {};
   VkRenderPass pass_ = VK_NULL_HANDLE;
