@@ -168,8 +168,8 @@ void Panels::draw_skeleton(const Fit& fit, const ArmPose& arm) const {
         {at.x - half, at.y - half}, {at.x + half, at.y - half}, {at.x + half, at.y + half}, {at.x - half, at.y + half}};
     if (joint.state == JointState::kSeen) {
       list.AddRect(corners[0], corners[2], kBox, 2 * scale_, 0, 2.5f * scale_);
-      list.AddCircleFilled(at, 4 * scale_, kBox);
       list.AddCircle(at, ring, IM_COL32(255, 255, 255, 190), 0, 1.5f * scale_);
+      list.AddCircleFilled(at, 4 * scale_, kBox);
     } else {
       for (std::size_t i = 0; i < 4; ++i) dashed_line(list, corners[i], corners[(i + 1) % 4], kBox, 2.5f * scale_, dash / 2);
       dashed_circle(list, at, ring, IM_COL32(255, 255, 255, 150), 1.5f * scale_, dash / 2);

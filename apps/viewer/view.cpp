@@ -68,6 +68,7 @@ class Viewer {
       DUO_TRY(draw());
       DUO_TRY(window_.end());
       DUO_TRY(keep_screenshot());
+      DUO_TRY(check_end());
     }
     return {};
   }
@@ -101,9 +102,10 @@ class Viewer {
     ImGui::PopStyleVar();
     ImGui::End();
     take_keys();
-    window_.set_title(clicks_.wanted()                  ? "duoptic view: " + clicks_.prompt()
-                      : shown_ && !shown_->arms.empty() ? "duoptic view: tracking"
-                                                        : "duoptic view");
+    window_.set_title(!shown_                 ? "duoptic view"
+                      : clicks_.wanted()      ? "duoptic view: " + clicks_.prompt()
+                      : !shown_->arms.empty() ? "duoptic view: tracking"
+                                              : "duoptic view");
     return {};
   }
 
@@ -144,6 +146,16 @@ class Viewer {
     return written;
   }
 
+  /// A screenshot of a frame that never comes.
+  Result<void> check_end() const {
+    if (options_.screenshot.empty() || done_ || !shown_ || player_.status().state != PlayState::kEnded) return {};
+    const std::int64_t pairs = shown_->number + 1;
+    if (pairs > options_.after || player_.newest() != shown_) return {};
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("cannot take a screenshot of frame {}: {} ends after {} pairs, numbered from 0", options_.after,
+                             options_.player.left, pairs)};
+  }
+
   const Options& options_;
   Window& window_;
   Player& player_;
@@ -181,11 +193,12 @@ Command add(CLI::App& app) {
   sub->add_option("LEFT", options->player.left, "Video of the left camera, or of both side by side")->required();
   sub->add_option("RIGHT", options->player.right, "Video of the right camera");
   sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); left out: the source's own");
-  sub->add_flag("--loop", options->player.loop, "Start again at the end of a file");
+  CLI::Option* loop = sub->add_flag("--loop", options->player.loop, "Start again at the end of a file");
   sub->add_flag("--paused", options->paused, "Wait at the first frame");
   sub->add_option("-o,--output", options->player.lines, "File for the JSON lines of tracked frames")->type_name("FILE");
-  CLI::Option* shot =
-      sub->add_option("--screenshot", options->screenshot, "Write a PNG of the window, then close it")->type_name("FILE");
+  CLI::Option* shot = sub->add_option("--screenshot", options->screenshot, "Write a PNG of the window, then close it")
+                          ->type_name("FILE")
+                          ->excludes(loop);
   sub->add_option("--after", options->after, "The frame of the screenshot")
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
