@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rig_report.h"
 #include "style.h"
 
 namespace duo::app::view {
@@ -26,6 +25,13 @@ void colored(ImU32 color, const std::string& text) {
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
+}
+
+/// A name and what it is.
+void fact(const char* name, const std::string& text) {
+  ImGui::TextDisabled("%s", name);
+  ImGui::SameLine(ImGui::GetFontSize() * 7.5f);
+  colored(kText, text);
 }
 
 ImU32 color_of_verdict(RigVerdict verdict) {
@@ -68,8 +74,8 @@ bool Sidebar::draw(Player& player, Clicks& clicks, const Shown* shown, const std
   put_playback(player, shown, status);
   put_joints(shown);
   put_speed();
-  put_parameters(player);
   put_source(player, status);
+  put_parameters(player);
   ImGui::Dummy({0, 4});
   const bool wanted = ImGui::Button("Screenshot", {-1, 0});
   if (!note.empty()) colored(kFaint, note);
@@ -211,19 +217,25 @@ void Sidebar::put_speed() const {
 
 void Sidebar::put_parameters(Player& player) {
   ImGui::Dummy({0, 2});
-  if (!ImGui::CollapsingHeader(fmt::format("Matcher {}###matcher", matcher_).c_str())) return;
+  if (!ImGui::CollapsingHeader(("Matcher " + matcher_ + "###matcher").c_str())) return;
   bool changed = false;
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {4 * scale_, 2 * scale_});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * scale_, 4 * scale_});
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const ParameterInfo& info = parameters_[i];
     const std::string format = info.unit.empty() ? "%d" : "%d " + info.unit;
+    ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", info.name.c_str());
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", info.help.c_str());
+    bool hovered = ImGui::IsItemHovered();
+    ImGui::SameLine(128 * scale_);
     ImGui::SetNextItemWidth(-1);
     ImGui::SliderInt(("##" + info.name).c_str(), &values_[i], static_cast<int>(info.min), static_cast<int>(info.max),
                      format.c_str(), ImGuiSliderFlags_AlwaysClamp);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", info.help.c_str());
+    hovered = ImGui::IsItemHovered() || hovered;
     changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+    if (hovered) ImGui::SetTooltip("%s", info.help.c_str());
   }
+  ImGui::PopStyleVar(2);
   if (ImGui::Button("Preset's values", {-1, 0})) {
     for (std::size_t i = 0; i < parameters_.size(); ++i) values_[i] = static_cast<int>(parameters_[i].value);
     changed = true;
@@ -238,24 +250,26 @@ void Sidebar::put_parameters(Player& player) {
 void Sidebar::put_source(Player& player, const PlayerStatus& status) const {
   if (!ImGui::CollapsingHeader("Source and rig", ImGuiTreeNodeFlags_DefaultOpen)) return;
   const Recording& recording = player.recording();
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(source_.c_str());
-  ImGui::TextDisabled(
-      "%s", fmt::format("{}x{}, {:.0f} pictures/s, {}; engine {}, window by {}", recording.size.width, recording.size.height,
-                        1 / recording.frame_s, player.live() ? "live" : "file", recording.engine, device_)
-                .c_str());
-  ImGui::TextUnformatted(describe(player.rig()).c_str());
-  ImGui::PopTextWrapPos();
+  const Rig& rig = player.rig();
+  colored(kText, source_);
+  fact("pictures", fmt::format("{}x{}, {:.0f} a second, {}", recording.size.width, recording.size.height, 1 / recording.frame_s,
+                               player.live() ? "live" : "from files"));
+  fact("focal lengths", fmt::format("{:.1f} and {:.1f} px", rig.left.fx_px, rig.right.fx_px));
+  fact("baseline", fmt::format("{:.1f} mm{}", 1000 * rig.baseline_m(), rig.metric ? "" : ", a guess"));
+  fact("engine", recording.engine);
+  fact("window", device_);
   for (const RigDoubt& doubt : doubts_) colored(color_of_verdict(doubt.verdict), doubt.what);
-  if (doubts_.empty()) colored(kBox, "its numbers raise no doubt");
   if (status.checking_rig)
     ImGui::TextDisabled("looking at the pictures ...");
   else if (ImGui::Button("Does the rig fit this scene?", {-1, 0}))
     player.check_rig();
   if (!status.health) return;
   if (!*status.health) return colored(kBad, status.health->error().what);
-  colored(color_of_verdict((*status.health)->verdict), name_of((*status.health)->verdict));
-  colored(kText, describe(**status.health));
+  const SceneHealth& health = **status.health;
+  colored(color_of_verdict(health.verdict), fmt::format("By this scene: {}", name_of(health.verdict)));
+  fact("rows", fmt::format("{:.2f} px off; good below {}", health.row_px, kGoodRow_px));
+  fact("pan", fmt::format("{:.1f} \u00b1 {:.1f} px", health.pan_px, health.pan_sigma_px));
+  fact("points", fmt::format("{} in {:.0f} % of the picture", health.points, 100 * health.covered));
 }
 
 }  // namespace duo::app::view
