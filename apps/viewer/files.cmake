@@ -8,6 +8,7 @@ target_sources(duoptic_tool PRIVATE
   ${dir}/player.cpp
   ${dir}/sidebar.cpp
   ${dir}/style.cpp
+  ${dir}/swapchain.cpp
   ${dir}/textures.cpp
   ${dir}/view.cpp
   ${dir}/window.cpp)

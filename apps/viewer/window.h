@@ -1,14 +1,14 @@
 // A window that ImGui draws into.
 #pragma once
 
-#include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gpu.h"
+#include "swapchain.h"
 #include "textures.h"
 
 struct GLFWwindow;
@@ -50,42 +50,27 @@ class Window {
   std::optional<Image<Rgb8>> screenshot() { return std::exchange(screenshot_, std::nullopt); }
 
  private:
-  struct Target {
-    VkImageView view = VK_NULL_HANDLE;
-    VkFramebuffer framebuffer = VK_NULL_HANDLE;
-    VkSemaphore drawn = VK_NULL_HANDLE;
-    VkImage image = VK_NULL_HANDLE;
-  };
   Window() = default;
   Result<void> create_glfw(const std::string& title, Size size);
-  Result<void> create_pass();
   Result<void> create_commands();
   Result<void> create_imgui();
-  Result<void> make_swapchain();
-  Result<void> make_target(VkImage image);
-  void destroy_targets();
-  Result<std::optional<std::uint32_t>> acquire();
-  Result<void> record(const Target& target, const HostBuffer* keep);
-  Result<void> show(std::uint32_t index);
+  Result<void> upload_letters();
+  Result<void> record(const Swapchain::Target& target, const HostBuffer* keep);
+  Result<void> submit(const Swapchain::Target& target);
   Size framebuffer_size() const;
 
-  bool glfw_ = false, imgui_ = false;
+  bool glfw_ = false, imgui_ = false, letters_ = false;  // what was started
   GLFWwindow* window_ = nullptr;
   float scale_ = 1;
   std::string title_;
   std::vector<int> keys_;
   std::unique_ptr<Gpu> gpu_;
-  VkSurfaceFormatKHR format_ = {};
-  VkRenderPass pass_ = VK_NULL_HANDLE;
+  std::unique_ptr<Swapchain> swapchain_;
   VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
   VkCommandPool pool_ = VK_NULL_HANDLE;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
   VkFence done_ = VK_NULL_HANDLE;
   VkSemaphore acquired_ = VK_NULL_HANDLE;
-  VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
-  VkExtent2D extent_ = {};
-  std::vector<Target> targets_;
-  bool stale_ = true, readable_ = false;  // the swapchain no longer fits; its pictures can be copied
   bool wanted_ = false;
   std::optional<Image<Rgb8>> screenshot_;
   std::unique_ptr<Textures> textures_;
