@@ -258,7 +258,7 @@ void Panels::turn_cloud(const Cell& cell) {
   ImGui::SetCursorScreenPos(cell.from);
   ImGui::InvisibleButton("points", {cell.to.x - cell.from.x, cell.to.y - cell.from.y});
   const ImGuiIO& io = ImGui::GetIO();
-  if (ImGui::IsItemActive()) {
+  if (ImGui::IsItemActive() && !ImGui::IsItemActivated()) {  // not the way to where the button went down
     orbit_.yaw_rad = std::clamp(orbit_.yaw_rad - kRadiansPerPixel * io.MouseDelta.x / scale_, -kMost_rad, kMost_rad);
     orbit_.pitch_rad = std::clamp(orbit_.pitch_rad + kRadiansPerPixel * io.MouseDelta.y / scale_, -kMost_rad, kMost_rad);
   }
