@@ -34,7 +34,7 @@ class FrameAhead {
   std::int64_t count() const { return count_; }
   /// As PairSource::next(), into last(); not to be called again after the end or an error.
   Result<Next> next() { return frames_->next(last_); }
-  /// Lives until the next next().
+  /// Lives until next() gives another.
   const Matched& last() const { return last_; }
   /// Before the end: until the next frame is ready; matching then rests.
   void wait() { frames_->wait(); }

@@ -27,8 +27,8 @@ using test::put;
 
 constexpr int kInput = 4, kOutput = 5;
 constexpr int kPairs = 6;
-// Three places on the wall of the synthetic room as far apart as an arm's, raw left pixels.
-constexpr double kClicks_px[3][2] = {{160, 100}, {160, 77}, {160, 54}};
+// Twice three places on the wall of the synthetic room as far apart as an arm's, raw left pixels.
+constexpr double kClicks_px[6][2] = {{160, 100}, {160, 77}, {160, 54}, {190, 100}, {190, 77}, {190, 54}};
 // Where the camera's picture lies in the window as it opens: its corner, and its scale.
 constexpr double kCorner_px[2] = {16, 36}, kScale = 528.0 / 320;
 constexpr Rgb8 kBox = {60, 230, 80}, kBone = {235, 45, 40};
@@ -79,6 +79,7 @@ class ViewWindow : public ::testing::Test {
     const SyntheticPair raw = render_synthetic(setup, 2);
     for (int i = 0; i < kPairs; ++i) ASSERT_TRUE(left->write(raw.pair.left.pixels) && right->write(raw.pair.right.pixels));
     ASSERT_TRUE(left->finish() && right->finish());
+    ASSERT_TRUE(write_png(raw.pair.left.pixels, at("left.png")) && write_png(raw.pair.right.pixels, at("right.png")));
     ASSERT_TRUE(save_rig(raw.rig, at("rig.json")));
     // Drivers keep what they made until the end.
     put(at("leaks.txt"), "leak:libvulkan\nleak:libLLVM\nleak:libX11\nleak:libxcb\n");
@@ -116,10 +117,10 @@ class Running : public ViewWindow {
  protected:
   void start(const std::string& arguments) {
     for (const char* old : {"exit.txt", "view_out.txt", "view_err.txt"}) fs::remove(at(old));
-    const std::string command =
-        "cd '" + at("").string() + "' && { ( " + environment() +
-        "VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation '" DUO_TOOL "' view left.mp4 right.mp4 --rig rig.json " + arguments +
-        " >view_out.txt 2>view_err.txt & echo $! >view.txt; wait $!; echo $? >exit.txt ) & }";
+    const std::string command = "cd '" + at("").string() + "' && { ( " + environment() +
+                                "VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation '" DUO_TOOL "' view --rig rig.json " +
+                                arguments +
+                                " >view_out.txt 2>view_err.txt & echo $! >view.txt; wait $!; echo $? >exit.txt ) & }";
     ASSERT_EQ(std::system(command.c_str()), 0);
     ASSERT_TRUE(waited([this] {
       window_ = told("xdotool search --onlyvisible --name 'duoptic view'");
@@ -131,10 +132,15 @@ class Running : public ViewWindow {
     if (!fs::exists(at("exit.txt")))
       if (const int viewer = std::atoi(bytes_of(at("view.txt")).c_str()); viewer > 0) kill(viewer, SIGKILL);
   }
-  void wait_for_title(const std::string& words) {
+  /// Looks ten times a second; `meanwhile` is done each time.
+  void wait_for_title(
+      const std::string& words, const std::function<void()>& meanwhile = [] {}) {
     std::string title;
-    ASSERT_TRUE(waited([&] { return (title = told("xdotool getwindowname " + window_)).find(words) != std::string::npos; }))
-        << "no title '" << words << "' but " << title << bytes_of(at("view_err.txt"));
+    ASSERT_TRUE(waited([&] {
+      meanwhile();
+      return (title = told("xdotool getwindowname " + window_)).find(words) != std::string::npos;
+    })) << "no title '"
+        << words << "' but " << title << bytes_of(at("view_err.txt"));
   }
   void click(int joint) {
     const auto x = static_cast<int>(window_px(kClicks_px[joint][0], kCorner_px[0]));
@@ -159,11 +165,11 @@ class Running : public ViewWindow {
   }
 
   std::string window_;
-  double clicked_[3][2] = {};
+  double clicked_[6][2] = {};
 };
 
 TEST_F(Running, ThreeClicksStartTracking) {
-  start("--paused --loop -o lines.jsonl");
+  start("left.mp4 right.mp4 --paused --loop -o lines.jsonl");
   const char* prompts[] = {"right hand (1 of 3)", "right elbow (2 of 3)", "right shoulder (3 of 3)"};
   for (int joint = 0; joint < 3; ++joint) {
     wait_for_title(prompts[joint]);
@@ -228,8 +234,29 @@ TEST_F(Running, ThreeClicksStartTracking) {
   EXPECT_GT(frames, 1);
 }
 
+/// One picture of each camera is a stream that has ended when its arms are selected.
+TEST_F(Running, BothArmsOfAStillPicture) {
+  start("left.png right.png -o still.jsonl");
+  wait_for_title("right hand (1 of 6)", [this] { told("xdotool mousemove --window " + window_ + " 1256 51 click 1"); });
+  for (int i = 0; i < 6; ++i) {
+    wait_for_title("(" + std::to_string(i + 1) + " of 6)");
+    click(i);
+  }
+  wait_for_title("tracking");
+  press("q");
+  expect_end(0);
+  std::istringstream lines(bytes_of(at("still.jsonl")));
+  std::string line;
+  std::getline(lines, line);
+  std::getline(lines, line);
+  const auto frame = nlohmann::json::parse(line, nullptr, false);
+  EXPECT_EQ(frame["frame"], 0) << line;
+  EXPECT_EQ(frame["joints"].size(), 3u) << line;
+  EXPECT_EQ(frame["joints2"].size(), 3u) << line;
+}
+
 TEST_F(Running, AnInterruptCompletesTheLines) {
-  start("--loop -o interrupted.jsonl");
+  start("left.mp4 right.mp4 --loop -o interrupted.jsonl");
   wait_for_title("Click");
   kill(std::atoi(bytes_of(at("view.txt")).c_str()), SIGTERM);
   expect_end(0);
