@@ -1,5 +1,5 @@
 # duoptic_stage(NAME [VULKAN]): adds src/stages/NAME to the library, its shader when VULKAN is given, and its test.
-# duoptic_test(NAME SOURCE): one GoogleTest program with tests/main.cpp, one ctest entry.
+# duoptic_test(NAME SOURCE [SLOW]): one GoogleTest program with tests/main.cpp, one ctest entry.
 
 # Warnings are errors in our own code; -ffp-contract=off because a fused multiply-add would round differently from engine to engine.
 add_library(duoptic_flags INTERFACE)
@@ -37,7 +37,8 @@ if(DUO_TESTS)
 endif()
 
 function(duoptic_test name source)
-  if(NOT DUO_TESTS)
+  cmake_parse_arguments(ARG "SLOW" "" "" ${ARGN})
+  if(NOT DUO_TESTS OR (ARG_SLOW AND NOT DUO_SLOW_TESTS))
     return()
   endif()
   string(REPLACE "/" "_" target ${name}_test)

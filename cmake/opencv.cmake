@@ -1,7 +1,7 @@
 # OpenCV by modules: Debian's OpenCVConfig.cmake comes only with libopencv-dev, which pulls in every module and its
 # dependencies; the modules we use have their own small packages. Gives the targets opencv::core, opencv::imgproc, …
 find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
-set(opencv_modules core imgproc imgcodecs calib3d)
+set(opencv_modules core imgproc imgcodecs calib3d videoio)
 if(DUO_TESTS)
   list(APPEND opencv_modules features2d)  # its SIFT is held against ours
 endif()

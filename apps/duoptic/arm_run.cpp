@@ -38,7 +38,7 @@ void ArmOptions::add_to(CLI::App& app) {
 Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, const std::optional<Rig>& given,
                             const ArmOptions& options, std::int64_t first) {
   ArmRun run;
-  DUO_TRY_ASSIGN(auto pairs, open_pairs(left, right));
+  DUO_TRY_ASSIGN(auto pairs, open_pairs(left, right, given ? CameraWish{.size = given->left.size} : CameraWish{}));
   DUO_TRY_ASSIGN(run.engine_, make_engine(options.engine.engine, options.engine.threads));
   Setup& setup = run.setup_;
   setup = options.engine.setup();
@@ -65,6 +65,7 @@ Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, c
   run.recording_.rectified = *run.engine_->rectified();
   run.recording_.size = setup.size;
   run.recording_.frame_s = frame_s;
+  run.recording_.live = pairs->live();
   run.frames_ = std::make_unique<FrameAhead>(std::move(pairs), *run.engine_, first);
   return run;
 }

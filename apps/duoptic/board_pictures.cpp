@@ -60,6 +60,7 @@ Result<BoardPictures> BoardPictures::open(const fs::path& left, const fs::path& 
     if (fs::is_directory(right, error))
       return refused("one of both is a folder, the other not; give two folders or two videos");
     DUO_TRY_ASSIGN(out.video_, open_pairs(left, right));
+    if (out.video_->live()) return refused("cameras give no second look; record the board first, and give the videos");
     if (out.video_->still()) return refused("one pair of pictures is too few; give two folders of them, or two videos");
     return out;
   }

@@ -63,6 +63,9 @@ Command add(CLI::App& app);
 namespace view {
 Command add(CLI::App& app);
 }
+namespace cameras {
+Command add(CLI::App& app);
+}
 namespace version {
 Command add(CLI::App& app);
 }

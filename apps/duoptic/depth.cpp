@@ -3,11 +3,13 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "command.h"
 #include "duoptic/calibrate.h"
 #include "duoptic/source.h"
 #include "frame_files.h"
+#include "interrupt.h"
 #include "progress.h"
 #include "timing.h"
 
@@ -47,8 +49,13 @@ struct Summary {
 Result<Summary> process(PairSource& pairs, Engine& engine, const Options& options, const CLI::App& app) {
   Summary summary;
   Progress progress(app, pairs.count(), options.quiet);
+  std::optional<Interrupt> interrupt;
+  if (pairs.live()) interrupt.emplace();
   for (Pair pair;; ++summary.read) {
-    DUO_TRY_ASSIGN(summary.end, pairs.next(pair));
+    do {
+      DUO_TRY_ASSIGN(summary.end, pairs.next(pair));
+    } while (summary.end == Next::kNothing && !Interrupt::asked());
+    if (Interrupt::asked()) break;
     if (summary.end != Next::kPicture) break;
     if (summary.read % options.every != 0) continue;
     const Frame* frame = nullptr;
@@ -99,12 +106,15 @@ void print(const Summary& summary, const Engine& engine, const Options& options,
 }
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
-  DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right));
   Setup setup = options.engine.setup();
-  setup.size = pairs->size();
-  setup.max_disparity = options.max_disparity;
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(setup.rig, load_rig(options.rig));
+  }
+  DUO_TRY_ASSIGN(const auto pairs,
+                 open_pairs(options.left, options.right, setup.rig ? CameraWish{.size = setup.rig->left.size} : CameraWish{}));
+  setup.size = pairs->size();
+  setup.max_disparity = options.max_disparity;
+  if (setup.rig) {
     if (options.near_m > 0) {
       DUO_TRY_ASSIGN(const RigDescription can, describe_rig(*setup.rig, options.near_m));
       setup.max_disparity = can.max_disparity;

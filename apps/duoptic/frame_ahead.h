@@ -53,10 +53,11 @@ class FrameAhead {
   }
 
   TimeNs start_ns() const { return start_ns_; }  // of the first pair, once next() gave one
-  /// Pairs that were read before the end, and what PairSource::warning() says then.
+  /// Pairs that were read before the end, and what PairSource::warning() says then; live, at any time.
   std::int64_t read() const { return read_; }
   std::string warning() const { return source_->warning(); }
-  const PairSource& source() const { return *source_; }
+  std::int64_t dropped() const { return source_->dropped(); }
+  bool still() const { return source_->still(); }
 
  private:
   Result<Next> match(Matched& into) {

@@ -58,7 +58,7 @@ Result<Exit> check(const Options& options, const CLI::App& app) {
   const std::vector<RigDoubt> doubts = rig_doubts(rig);
   std::optional<SceneHealth> scene;
   if (!options.left.empty()) {
-    DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right));
+    DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right, {.size = rig.left.size}));
     DUO_TRY_ASSIGN(scene, scene_health(rig, *pairs, options.threads));
     if (!pairs->warning().empty()) say(app, "warning: " + pairs->warning());
   }
@@ -80,7 +80,7 @@ Result<Exit> check(const Options& options, const CLI::App& app) {
 
 Result<Exit> refine(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(const Rig rig, load_rig(options.rig));
-  DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right));
+  DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right, {.size = rig.left.size}));
   DUO_TRY_ASSIGN(SceneRig found, refine_rig(rig, *pairs, options.threads));
   if (!(found.rig.right_from_left == rig.right_from_left)) found.rig.date = date_now();
   const bool useful = found.after.verdict != RigVerdict::kRecalibrate;

@@ -1,4 +1,4 @@
-// duoptic track: two videos and three clicks in, the arm in 3D out.
+// duoptic track: two videos or cameras and three clicks in, the arm in 3D out.
 #include <fmt/format.h>
 
 #include <array>
@@ -8,7 +8,9 @@
 #include <optional>
 
 #include "arm_run.h"
+#include "interrupt.h"
 #include "progress.h"
+#include "skew_watch.h"
 #include "timing.h"
 
 namespace duo::app::track {
@@ -18,12 +20,15 @@ constexpr char kFooter[] =
     "Clicks are pixels of the raw left picture at --at-frame; tracking starts there. Prints JSON lines: a header, then a line "
     "a\n"
     "frame with each joint's place in metres (rig frame: x right, y down, z forward), its place in the raw left picture, its\n"
-    "state (seen, inferred = hidden but known within sigma, lost) and one standard deviation. Two runs give the same bytes.\n\n"
+    "state (seen, inferred = hidden but known within sigma, lost) and one standard deviation. Two runs give the same bytes.\n"
+    "Cameras run until Ctrl-C, which ends the files; a frame that comes too late is left out (skew_ms: the right picture's\n"
+    "time after the left's).\n\n"
     "Examples:\n"
     "  duoptic track left.avi right.avi --rig rig.json --select hand=451,360 --select elbow=478,285 --select shoulder=446,201\n"
     "  duoptic track left.avi right.avi --rig rig.json --at-frame 40 --select hand=.. --select elbow=.. --select shoulder=.. "
     "\\\n"
-    "      --select2 hand=.. --select2 elbow=.. --select2 shoulder=.. -o arms.jsonl --video arms.mp4";
+    "      --select2 hand=.. --select2 elbow=.. --select2 shoulder=.. -o arms.jsonl --video arms.mp4\n"
+    "  duoptic track camera:0 camera:2 --rig rig.json --at-frame 60 --select ...   (duoptic cameras tells the names)";
 
 struct Options {
   std::string left, right, rig, output, video;
@@ -76,10 +81,37 @@ std::vector<ArmSelection> selections(const Options& options) {
   return arms;
 }
 
+/// Says what happens to live cameras, once.
+class Events {
+ public:
+  explicit Events(const CLI::App& app) : app_(app) {}
+  void see(const std::string& warning) {
+    if (warning != said_ && !warning.empty()) say(app_, warning);
+    said_ = warning;
+  }
+
+ private:
+  const CLI::App& app_;
+  std::string said_;
+};
+
+/// As ArmRun::next(), but waits for live cameras that are away and ends with Ctrl-C.
+Result<Next> next_frame(ArmRun& run, Events& events) {
+  while (true) {
+    if (Interrupt::asked()) return Next::kEnd;
+    DUO_TRY_ASSIGN(const Next next, run.next());
+    if (run.recording().live) events.see(run.frames().warning());
+    if (next != Next::kNothing) return next;
+  }
+}
+
 /// The frame in which joints are selected.
-Result<void> first_frame(ArmRun& run, std::int64_t number, const std::string& left) {
-  DUO_TRY_ASSIGN(const Next next, run.next());
+Result<void> first_frame(ArmRun& run, Events& events, std::int64_t number, const std::string& left) {
+  DUO_TRY_ASSIGN(const Next next, next_frame(run, events));
   if (next == Next::kPicture) return {};
+  if (Interrupt::asked())
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("stopped before frame {}, the one to select in, came from {}", number, left)};
   const std::int64_t read = run.frames().read();
   return Error{ErrorCode::kBadInput, fmt::format("cannot select at frame {}: {} gives {} pair{}, numbered from 0", number, left,
                                                  read, read == 1 ? "" : "s")};
@@ -105,12 +137,14 @@ struct Summary {
   Next end = Next::kEnd;
 };
 
-/// Tracks from the first frame to the end of the files.
-Result<Summary> track_all(ArmRun& run, const std::vector<ArmSelection>& arms, const Options& options, const CLI::App& app) {
+/// Tracks from the first frame to the end of the files, or to Ctrl-C.
+Result<Summary> track_all(ArmRun& run, Events& events, const std::vector<ArmSelection>& arms, const Options& options,
+                          const CLI::App& app) {
   DUO_TRY(run.select(arms));
   DUO_TRY_ASSIGN(const Sinks sinks, make_sinks(options, run.recording(), app));
   Summary summary;
   Progress progress(app, run.frames().count(), options.quiet);
+  SkewWatch skew(run.recording().rectified.baseline_m);
   while (true) {
     TrackedFrame frame = run.tracked(run.track());
     if (options.stats) frame.times = run.times();
@@ -118,7 +152,8 @@ Result<Summary> track_all(ArmRun& run, const std::vector<ArmSelection>& arms, co
     summary.engine_ms.push_back(run.times().engine_ms);
     summary.tracker_ms.push_back(run.times().tracker_ms);
     progress.frame(frame.number + 1);
-    DUO_TRY_ASSIGN(summary.end, run.next());
+    if (const auto warning = run.recording().live ? skew.see(frame) : std::nullopt) say(app, "warning: " + *warning);
+    DUO_TRY_ASSIGN(summary.end, next_frame(run, events));
     if (summary.end != Next::kPicture) break;
   }
   for (const auto& sink : sinks) DUO_TRY(sink->finish());
@@ -127,37 +162,47 @@ Result<Summary> track_all(ArmRun& run, const std::vector<ArmSelection>& arms, co
 
 std::string text_of(const Summary& summary, double seconds, const ArmRun& run, const Options& options) {
   const std::size_t frames = summary.engine_ms.size();
+  const std::string dropped = run.recording().live ? fmt::format(", {} dropped", run.frames().dropped()) : std::string();
   return fmt::format(
-      "{} frame{} of {}x{} in {:.1f} s = {:.1f} frames/s; engine {:.1f} ms, tracker {:.1f} ms ({}, {}, {} thread{})", frames,
+      "{} frame{} of {}x{} in {:.1f} s = {:.1f} frames/s{}; engine {:.1f} ms, tracker {:.1f} ms ({}, {}, {} thread{})", frames,
       frames == 1 ? "" : "s", run.recording().size.width, run.recording().size.height, seconds,
-      static_cast<double>(frames) / seconds, median(summary.engine_ms), median(summary.tracker_ms), run.recording().engine,
-      run.recording().tracker_preset, options.arm.engine.threads, options.arm.engine.threads == 1 ? "" : "s");
+      static_cast<double>(frames) / seconds, dropped, median(summary.engine_ms), median(summary.tracker_ms),
+      run.recording().engine, run.recording().tracker_preset, options.arm.engine.threads,
+      options.arm.engine.threads == 1 ? "" : "s");
 }
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
   const std::vector<ArmSelection> arms = selections(options);
   DUO_TRY_ASSIGN(const Rig rig, load_rig(options.rig));
   DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(options.left, options.right, rig, options.arm, options.at_frame));
-  DUO_TRY(first_frame(run, options.at_frame, options.left));
+  std::optional<Interrupt> interrupt;
+  if (run.recording().live) interrupt.emplace();
+  Events events(app);
+  DUO_TRY(first_frame(run, events, options.at_frame, options.left));
   Result<Summary> summary = Summary{};
-  const Times times = timed([&] { summary = track_all(run, arms, options, app); });
+  const Times times = timed([&] { summary = track_all(run, events, arms, options, app); });
   if (!summary) return summary.error();
   // stdout belongs to the lines when they go there.
   if (options.stats)
     say(app, text_of(*summary, times.wall_ms / 1000, run, options));
   else if (!options.quiet && !options.output.empty())
     fmt::print("{}\n", text_of(*summary, times.wall_ms / 1000, run, options));
-  if (const std::string warning = run.frames().warning(); !warning.empty()) say(app, "warning: " + warning);
+  if (const std::string warning = run.frames().warning(); !run.recording().live && !warning.empty())
+    say(app, "warning: " + warning);
   return summary->end == Next::kCut ? Exit::kCut : Exit::kOk;
 }
 
 }  // namespace
 
 Command add(CLI::App& app) {
-  CLI::App* sub = app.add_subcommand("track", "An arm in 3D through two videos, from a click on hand, elbow and shoulder");
+  CLI::App* sub =
+      app.add_subcommand("track", "An arm in 3D through two videos or live, from a click on hand, elbow and shoulder");
   const auto options = std::make_shared<Options>();
-  sub->add_option("LEFT", options->left, "Video of the left camera, or of both side by side")->required();
-  sub->add_option("RIGHT", options->right, "Video of the right camera");
+  sub->add_option("LEFT", options->left,
+                  "Video of the left camera, or the camera itself (camera:0, /dev/video0, http://, rtsp://, gst:);\nalone: "
+                  "both views side by side")
+      ->required();
+  sub->add_option("RIGHT", options->right, "The same of the right camera");
   sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON)")->required();
   sub->add_option("--select", options->select, "Where hand, elbow and shoulder are; once for each")
       ->type_name("JOINT=X,Y")

@@ -40,8 +40,9 @@ Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options) {
   DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(options.left, options.right, options.rig, options.arm));
   player->recording_ = run.recording();
   player->rig_ = run.rig();
-  player->live_ = run.frames().source().live();
-  player->still_ = run.frames().source().still();
+  player->skew_ = SkewWatch(run.recording().rectified.baseline_m);
+  player->live_ = run.recording().live;
+  player->still_ = run.frames().still();
   player->count_ = run.frames().count();
   player->status_.loop = options.loop;
   if (!options.lines.empty()) {
@@ -227,7 +228,9 @@ void Player::advance() {
   {
     const std::lock_guard lock(mutex_);
     status_.silent = *next == Next::kNothing;
-    status_.dropped = run_->frames().source().dropped();
+    status_.dropped = run_->frames().dropped();
+    if (live_) status_.event = run_->frames().warning();
+    if (status_.event.empty() && now_ms() < skew_until_ms_) status_.event = skew_words_;
   }
   if (*next == Next::kNothing) return;
   if (*next != Next::kPicture) return at_end(*next);
@@ -242,6 +245,11 @@ void Player::advance() {
   if (!live_ && selected_ && selected_->first == number) (void)run_->select(selected_->second);
   arms_ = run_->track();
   if (!arms_.empty()) write_line(run_->tracked(arms_));
+  if (const auto warning = live_ ? skew_.see(run_->tracked(arms_)) : std::nullopt) {
+    constexpr double kRead_ms = 10'000;
+    skew_words_ = *warning;
+    skew_until_ms_ = now + kRead_ms;
+  }
   show(interval);
 }
 
@@ -298,6 +306,7 @@ void Player::show(double interval_ms) {
   shown->arms = arms_;
   shown->times = run_->times();
   shown->interval_ms = interval_ms;
+  shown->skew_ms = static_cast<double>(now.frame.skew_ns) * 1e-6;
   shown->latency_ms = live_ ? now_ms() - static_cast<double>(now.left.t_ns) * 1e-6
                             : shown->times.engine_ms + (arms_.empty() ? 0 : shown->times.tracker_ms);
   const std::lock_guard lock(mutex_);

@@ -14,6 +14,7 @@
 
 #include "arm_run.h"
 #include "duoptic/rig_health.h"
+#include "skew_watch.h"
 
 namespace duo::app::view {
 
@@ -33,6 +34,7 @@ struct Shown {
   Frame frame;   // disparity and colour
   std::vector<ArmPose> arms;
   TrackTimes times;
+  double skew_ms = 0;      // how much later the right picture was taken
   double latency_ms = 0;   // live: from the picture's capture to here; files: what engine and tracker took
   double interval_ms = 0;  // since the one before; 0: it was not played
 };
@@ -44,6 +46,7 @@ struct PlayerStatus {
   bool loop = false;
   bool silent = false;  // live, and no pictures come
   std::int64_t dropped = 0, lines = 0;
+  std::string event;          // live: what cameras and their skew do to the result; empty: nothing
   std::string problem;        // of the last thing tried; empty: none
   bool checking_rig = false;  // scene_health() is at it
   std::optional<Result<SceneHealth>> health;
@@ -113,6 +116,9 @@ class Player {
   bool has_frame_ = false, step_ = false;
   double next_ms_ = 0, last_ms_ = 0;  // when the next frame is due and when the last came, CLOCK_MONOTONIC
   std::int64_t written_ = 0;
+  SkewWatch skew_{1};
+  std::string skew_words_;
+  double skew_until_ms_ = 0;
   std::optional<Error> failed_;
   bool cut_ = false;
   std::string warning_;

@@ -126,8 +126,10 @@ void Sidebar::put_playback(Player& player, const Shown* shown, const PlayerStatu
   if (player.live()) {
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    colored(status.silent ? kBad : kFaint,
-            status.silent ? "no pictures come: is a camera unplugged?" : fmt::format("{} pairs dropped", status.dropped));
+    ImGui::TextDisabled(
+        "%s", fmt::format("{} dropped, skew {:.1f} ms", status.dropped, shown != nullptr ? shown->skew_ms : 0).c_str());
+    if (status.silent) colored(kBad, "no pictures come: is a camera unplugged?");
+    if (!status.event.empty()) colored(kWarn, status.event);
     return;
   }
   ImGui::SameLine();

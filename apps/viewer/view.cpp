@@ -4,10 +4,10 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include <csignal>
 #include <memory>
 
 #include "command.h"
+#include "interrupt.h"
 #include "panels.h"
 #include "player.h"
 #include "sidebar.h"
@@ -21,6 +21,8 @@ constexpr char kFooter[] =
     "Keys: Space pause, Right one frame, Backspace undo a click, R restart, F12 screenshot, Q close.\n"
     "With -o the tracked frames are written as track writes them, complete when the window closes.\n\n"
     "Examples:\n"
+    "  duoptic view synthetic                                                        a rendered person, live\n"
+    "  duoptic view camera:0 camera:2 --rig rig.json\n"
     "  duoptic view left.avi right.avi --rig rig.json --loop\n"
     "  duoptic view left.avi right.avi --rig rig.json --matcher pyramid -o arm.jsonl\n"
     "  duoptic view left.avi right.avi --rig rig.json --screenshot view.png --after 30    closes after that frame";
@@ -33,9 +35,6 @@ struct Options {
   std::int64_t after = 0;
   bool paused = false;
 };
-
-/// Ctrl-C and the like close the window as its user would: lines are completed.
-volatile std::sig_atomic_t interrupted = 0;
 
 std::filesystem::path free_name() {
   std::error_code ignored;
@@ -59,7 +58,7 @@ class Viewer {
       player_.step();
     else
       player_.play(true);
-    while (!window_.closing() && interrupted == 0 && !done_) {
+    while (!window_.closing() && !Interrupt::asked() && !done_) {
       Window::wait(kIdle_s);
       DUO_TRY_ASSIGN(const bool visible, window_.begin());
       if (!visible) continue;
@@ -177,7 +176,7 @@ Result<Exit> run(Options options, const CLI::App& app) {
   DUO_TRY_ASSIGN(window, Window::open("duoptic view", kWindow));
   set_style(window->scale());
   DUO_TRY_ASSIGN(Sidebar sidebar, Sidebar::make(options.player, *player, window->device(), window->scale()));
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { interrupted = 1; });
+  const Interrupt interrupt;  // closes the window as its user would: lines are completed
   const Result<void> shown = Viewer(options, *window, *player, std::move(sidebar)).run();
   DUO_TRY_ASSIGN(const Exit exit, player->finish());
   if (!player->warning().empty()) say(app, "warning: " + player->warning());
@@ -190,8 +189,11 @@ Result<Exit> run(Options options, const CLI::App& app) {
 Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("view", "A window: depth, points, and an arm tracked from three clicks");
   const auto options = std::make_shared<Options>();
-  sub->add_option("LEFT", options->player.left, "Video of the left camera, or of both side by side")->required();
-  sub->add_option("RIGHT", options->player.right, "Video of the right camera");
+  sub->add_option("LEFT", options->player.left,
+                  "Picture or video of the left camera, the camera itself (camera:0, /dev/video0, http://, rtsp://, gst:),\nor "
+                  "synthetic; alone: both views side by side")
+      ->required();
+  sub->add_option("RIGHT", options->player.right, "The same of the right camera");
   sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); left out: the source's own");
   CLI::Option* loop = sub->add_flag("--loop", options->player.loop, "Start again at the end of a file");
   sub->add_flag("--paused", options->paused, "Wait at the first frame");

@@ -50,7 +50,8 @@ struct StageTime {
 /// Shape   every map H x W of the rectified pair; maps that were not wanted are empty
 struct Frame {
   std::uint64_t sequence = 0;
-  TimeNs t_ns = 0;
+  TimeNs t_ns = 0;                                // of the left picture
+  TimeNs skew_ns = 0;                             // how much later the right picture was taken
   Image<std::uint8_t> left, right;                // rectified, gray, denoised: what the matcher saw
   Image<std::uint8_t> left_inside, right_inside;  // 255 where the raw picture covers the pixel, 0 outside; empty = all inside
   Image<Rgb8> color;                              // rectified left picture (want: color)

@@ -76,6 +76,7 @@ struct Recording {
   Rectified rectified;
   Size size;  // of the raw left picture
   double frame_s = 1.0 / 30;
+  bool live = false;  // from cameras: what differs from run to run is told, too
 };
 
 struct TrackTimes {

@@ -31,14 +31,28 @@ class Source {
   virtual bool still() const = 0;
   /// Mean time between pictures, seconds; 1/30 where nothing is known.
   virtual double frame_s() const { return 1.0 / 30; }
+  /// True when pictures come as they are taken: next() then waits a second at most, and gives the newest.
+  virtual bool live() const { return false; }
+  /// Live: pictures that were lost on the way or that nobody took in time; any thread may ask.
+  virtual std::int64_t dropped() const { return 0; }
+  /// Live: what there is to say of the camera now (away since when, back again, cannot be locked); any thread may ask.
+  virtual std::string warning() const { return {}; }
   /// Fills `into` with the next picture; its memory is used again when it already has the right size.
   virtual Result<Next> next(Picture& into) = 0;
 };
 
-/// Opens a picture (PNG, JPEG, … one picture) or a video file.
+/// What is asked of live cameras. Files and network streams have what they have.
+struct CameraWish {
+  Size size = {640, 480};
+  double rate_hz = 30;
+};
+
+/// Opens a picture (PNG, JPEG, … one picture), a video file, a camera (camera:0, /dev/video0, camera:BUS_PATH) or a stream
+/// (http://, https://, rtsp://, gst:PIPELINE).
 ///
-/// Errors  missing, empty, not a picture or video, unreadable at its start
-Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path);
+/// Errors  missing, empty, not a picture or video, unreadable at its start; a camera that cannot be opened, that does not give
+///         the wished size, or that finds no room on its bus
+Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path, const CameraWish& wish = {});
 
 /// Two views as one stream of pairs, each exactly once.
 class PairSource {
@@ -57,14 +71,18 @@ class PairSource {
   virtual std::int64_t dropped() const { return 0; }
   /// Picture::t_ns counts from the start of a file; live, it is the steady clock's time of capture.
   virtual Result<Next> next(Pair& into) = 0;
-  /// After the end: why the stream ended before its files did (one was cut short, or is shorter); empty when it did not.
+  /// After the end: why the stream ended before its files did (one was cut short, or is shorter); empty when it did not. Live,
+  /// any thread at any time: what Source::warning() says of both.
   virtual std::string warning() const = 0;
 };
 
-/// Opens LEFT and RIGHT (two pictures or two videos of the same size); an empty `right` means that `left` holds both views
-/// side by side.
+/// Opens LEFT and RIGHT (two pictures, two videos or two live sources of the same size); an empty `right` means that `left`
+/// holds both views side by side. Two cameras share exposure, gain and white balance: the left one's, after a second.
+/// "synthetic", "synthetic:SCRIPT" or "synthetic:SCRIPT:WIDTHxHEIGHT" alone is the person of `duoptic synth`, live.
 ///
-/// Errors  those of open_source(); sizes differ; one is a picture and the other a video; odd width side by side
-Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right);
+/// Errors  those of open_source(); sizes differ; a picture and a video, a file and a live source, one camera twice; odd width
+///         side by side
+Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right,
+                                               const CameraWish& wish = {});
 
 }  // namespace duo

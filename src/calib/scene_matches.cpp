@@ -15,11 +15,13 @@ namespace {
 
 constexpr int kPairs = 12;                // looked at in a stream
 constexpr std::int64_t kFarthest = 3600;  // two minutes; what comes later is not read
-constexpr int kPoints = 6000;             // a picture
-constexpr double kSmooth_px = 0.8;        // before patches are compared: noise, and what lies between pixels
-constexpr int kRadius_px = 8;             // of a patch
-constexpr int kColumns = 8, kRows = 6;    // cells of the picture
-constexpr int kMostOfACell = 400;         // over all pairs
+constexpr std::int64_t kFarthestLive = 360;
+constexpr int kPatience = 20;           // times that a live source may say that nothing came; a second each at most
+constexpr int kPoints = 6000;           // a picture
+constexpr double kSmooth_px = 0.8;      // before patches are compared: noise, and what lies between pixels
+constexpr int kRadius_px = 8;           // of a patch
+constexpr int kColumns = 8, kRows = 6;  // cells of the picture
+constexpr int kMostOfACell = 400;       // over all pairs
 
 struct Candidate {
   SceneMatch match;
@@ -93,15 +95,20 @@ int cell_of(Vec2 at_px, Size size, int columns, int rows) {
 }
 
 Result<SceneMatches> match_scene(PairSource& pairs, int threads) {
-  const std::int64_t count = pairs.count() > 0 ? std::min(pairs.count(), kFarthest) : kFarthest;
+  const std::int64_t farthest = pairs.live() ? kFarthestLive : kFarthest;
+  const std::int64_t count = pairs.count() > 0 ? std::min(pairs.count(), farthest) : farthest;
   const std::int64_t step = std::max<std::int64_t>(1, (count + kPairs - 1) / kPairs);
   SceneMatches scene;
   scene.size = pairs.size();
   Matcher matcher(scene.size, threads);
   std::vector<Candidate> all;
   Pair pair;
+  int empty = 0;
   for (std::int64_t i = 0; i < count; ++i) {
-    DUO_TRY_ASSIGN(const Next next, pairs.next(pair));
+    DUO_TRY_ASSIGN(Next next, pairs.next(pair));
+    while (next == Next::kNothing && ++empty < kPatience) {
+      DUO_TRY_ASSIGN(next, pairs.next(pair));
+    }
     scene.cut = next == Next::kCut;
     if (next != Next::kPicture) break;
     if (i % step != 0) continue;

@@ -49,6 +49,7 @@ class RefEngine final : public Engine {
     Frame& frame = frames_[current_];
     frame.sequence = pair.sequence;
     frame.t_ns = pair.left.t_ns;
+    frame.skew_ns = pair.right.t_ns - pair.left.t_ns;
     timer_.start(frame.stages, setup.time_stages);
 
     const auto* maps = prepared_.rectification ? &*prepared_.rectification : nullptr;

@@ -50,8 +50,9 @@ std::string joint_text(const Keypoint& k) {
                      kStates[static_cast<int>(k.state)], number(k.confidence, 3), number(k.sigma_m, 4));
 }
 
-std::string frame_line(const TrackedFrame& frame) {
+std::string frame_line(const TrackedFrame& frame, bool live) {
   std::string line = fmt::format(R"({{"type":"frame","frame":{},"t_s":{})", frame.number, number(frame.t_s, 6));
+  if (live) line += fmt::format(R"(,"skew_ms":{})", number(static_cast<double>(frame.frame.skew_ns) * 1e-6, 3));
   for (std::size_t arm = 0; arm < frame.arms.size(); ++arm) {
     line += arm == 0 ? R"(,"joints":{)" : R"(,"joints2":{)";
     for (std::size_t j = 0; j < kArmJoints; ++j)
@@ -66,19 +67,21 @@ std::string frame_line(const TrackedFrame& frame) {
 
 class ToFile final : public Sink {
  public:
-  explicit ToFile(PartialFile file) : file_(std::move(file)) {}
+  ToFile(PartialFile file, bool live) : file_(std::move(file)), live_(live) {}
   Result<void> begin(const Recording& recording) { return file_.write(header_line(recording)); }
-  Result<void> write(const TrackedFrame& frame) override { return file_.write(frame_line(frame)); }
+  Result<void> write(const TrackedFrame& frame) override { return file_.write(frame_line(frame, live_)); }
   Result<void> finish() override { return file_.publish(); }
 
  private:
   PartialFile file_;
+  bool live_;
 };
 
 class ToStdout final : public Sink {
  public:
+  explicit ToStdout(bool live) : live_(live) {}
   Result<void> begin(const Recording& recording) { return print(header_line(recording)); }
-  Result<void> write(const TrackedFrame& frame) override { return print(frame_line(frame)); }
+  Result<void> write(const TrackedFrame& frame) override { return print(frame_line(frame, live_)); }
   Result<void> finish() override { return {}; }
 
  private:
@@ -87,6 +90,8 @@ class ToStdout final : public Sink {
     if (std::fwrite(line.data(), 1, line.size(), stdout) == line.size() && std::fflush(stdout) == 0) return {};
     return Error{ErrorCode::kWriteFailed, "cannot write to stdout; give a file with room instead"};
   }
+
+  bool live_;
 };
 
 template <class T>
@@ -98,9 +103,9 @@ Result<std::unique_ptr<Sink>> begun(std::unique_ptr<T> sink, const Recording& re
 }  // namespace
 
 Result<std::unique_ptr<Sink>> make_json_lines(const std::filesystem::path& path, const Recording& recording) {
-  if (path.empty()) return begun(std::make_unique<ToStdout>(), recording);
+  if (path.empty()) return begun(std::make_unique<ToStdout>(recording.live), recording);
   DUO_TRY_ASSIGN(PartialFile file, PartialFile::open(path));
-  return begun(std::make_unique<ToFile>(std::move(file)), recording);
+  return begun(std::make_unique<ToFile>(std::move(file), recording.live), recording);
 }
 
 }  // namespace duo

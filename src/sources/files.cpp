@@ -8,14 +8,19 @@
 #include <system_error>
 
 #include "duoptic/source.h"
+#include "sources/camera/camera.h"
+#include "sources/camera/modes.h"
 #include "sources/libav.h"
 #include "sources/pictures.h"
+#include "sources/stream.h"
 #include "sources/video.h"
 
 namespace duo {
 
-Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path) {
+Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path, const CameraWish& wish) {
   const std::string name = path.string();
+  if (is_camera_name(name)) return open_camera(linux_calls(), name, wish);
+  if (is_stream_name(name)) return open_stream(name);
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status))

@@ -1,4 +1,4 @@
-// open_pairs(): two files, or one with both views side by side, as one stream of pairs.
+// open_pairs(): two sources, or one with both views side by side, as one stream of pairs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +6,10 @@
 #include <utility>
 
 #include "duoptic/source.h"
+#include "sources/camera/camera.h"
+#include "sources/camera/modes.h"
+#include "sources/live/live_pairs.h"
+#include "sources/synthetic/live_clip.h"
 
 namespace duo {
 namespace {
@@ -55,7 +59,9 @@ class SideBySide final : public PairSource {
   std::int64_t count() const override { return both_->count(); }
   bool still() const override { return both_->still(); }
   double frame_s() const override { return both_->frame_s(); }
-  std::string warning() const override { return warning_; }
+  bool live() const override { return both_->live(); }
+  std::int64_t dropped() const override { return both_->dropped(); }
+  std::string warning() const override { return both_->live() ? both_->warning() : warning_; }
 
   Result<Next> next(Pair& into) override {
     DUO_TRY_ASSIGN(const Next next, both_->next(picture_));
@@ -86,8 +92,14 @@ std::string size_text(Size size) { return fmt::format("{}x{}", size.width, size.
 
 }  // namespace
 
-Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right) {
-  DUO_TRY_ASSIGN(auto left_source, open_source(left));
+Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right,
+                                               const CameraWish& wish) {
+  if (right.empty() && is_synthetic_name(left.string())) return open_live_clip(left.string());
+  if (is_camera_name(left.string()) && is_camera_name(right.string())) {
+    DUO_TRY_ASSIGN(auto both, open_cameras(linux_calls(), left.string(), right.string(), wish));
+    return make_live_pairs(std::move(both[0]), std::move(both[1]));
+  }
+  DUO_TRY_ASSIGN(auto left_source, open_source(left, wish));
   const Size size = left_source->size();
   if (right.empty()) {
     if (size.width % 2 != 0)
@@ -97,7 +109,10 @@ Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left
                                left.string(), size_text(size))};
     return std::unique_ptr<PairSource>(std::make_unique<SideBySide>(std::move(left_source), left.string()));
   }
-  DUO_TRY_ASSIGN(auto right_source, open_source(right));
+  DUO_TRY_ASSIGN(auto right_source, open_source(right, wish));
+  if (left_source->live() != right_source->live())
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("cannot pair {} with {}: one is live, the other a file", left.string(), right.string())};
   if (left_source->still() != right_source->still())
     return Error{ErrorCode::kBadInput,
                  fmt::format("cannot pair {} with {}: one is a picture, the other a video", left.string(), right.string())};
@@ -105,6 +120,7 @@ Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left
     return Error{ErrorCode::kBadInput,
                  fmt::format("cannot pair {} with {}: sizes differ, {} and {}; both views need the same size", left.string(),
                              right.string(), size_text(size), size_text(right_source->size()))};
+  if (left_source->live()) return make_live_pairs(std::move(left_source), std::move(right_source));
   return std::unique_ptr<PairSource>(
       std::make_unique<TwoFiles>(std::move(left_source), std::move(right_source), left.string(), right.string()));
 }

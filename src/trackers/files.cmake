@@ -7,5 +7,5 @@ target_sources(duoptic PRIVATE
   ${dir}/thesis_points.cpp ${dir}/thesis_tracker.cpp ${dir}/torso.cpp)
 duoptic_test(trackers/arm_parts ${dir}/arm_parts_test.cpp)
 duoptic_test(trackers/arm_tracker ${dir}/arm_tracker_test.cpp)
-duoptic_test(trackers/arm_clips ${dir}/arm_clips_test.cpp)
+duoptic_test(trackers/arm_clips ${dir}/arm_clips_test.cpp SLOW)
 duoptic_test(trackers/thesis_tracker ${dir}/thesis_tracker_test.cpp)

@@ -4,6 +4,7 @@
 # Valgrind's processor has AVX2 and no AVX-512, whatever the machine has. To write new counts: UPDATE=1.
 set -euo pipefail
 program=$1 counts=$2
+[[ -x $program ]] || { echo "no program $program"; exit 1; }
 command -v valgrind >/dev/null || { echo "skipped: no valgrind"; exit 77; }
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
@@ -16,7 +17,8 @@ instructions() {
 
 failed=0 new=
 while read -r matcher kept; do
-  now=$((($(instructions "$matcher" 3) - $(instructions "$matcher" 1)) / 2))
+  three=$(instructions "$matcher" 3) one=$(instructions "$matcher" 1)
+  now=$(((three - one) / 2))
   echo "$matcher: $now instructions a frame, kept $kept"
   new+="$matcher $now"$'\n'
   if ((now * 10 > kept * 11 || now * 10 < kept * 9)); then

@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <thread>
 
 #include "core/lens.h"
 #include "duoptic/source.h"
@@ -292,6 +294,45 @@ TEST(SyntheticClip, IsAnySize) {
   for (const Size size : {Size{1, 1}, Size{33, 17}, Size{17, 33}, Size{128, 72}}) {
     SyntheticClip clip = open("wave", 1, size);
     EXPECT_EQ(clip.frame(3).pair.left.pixels.size(), size);
+  }
+}
+
+// As two cameras: at their rate, the newest first, over and over.
+TEST(SyntheticClip, Live) {
+  const auto source = open_pairs("synthetic:wave:64x48", "");
+  ASSERT_TRUE(source) << source.error().what;
+  EXPECT_TRUE((*source)->live());
+  const SyntheticClipSetup setup{.size = kTiny, .script = "wave"};
+  auto clip = SyntheticClip::open(setup, 2);
+  EXPECT_EQ((*source)->rig()->left.fx_px, clip->rig().left.fx_px);
+  Pair pair;
+  Result<Next> next = (*source)->next(pair);
+  while (next && *next == Next::kNothing) {
+    EXPECT_NE((*source)->warning().find("rendering"), std::string::npos);
+    next = (*source)->next(pair);
+  }
+  ASSERT_TRUE(next && *next == Next::kPicture);
+  EXPECT_EQ((*source)->warning(), "");
+  EXPECT_EQ(pair.sequence, 0u);
+  EXPECT_EQ(pixels(pair.right.pixels), pixels(clip->frame(0).pair.right.pixels));
+  const TimeNs start_ns = pair.left.t_ns;
+  std::this_thread::sleep_for(std::chrono::milliseconds(2100));  // on the way back: 60 pairs there, the last of them once
+  ASSERT_EQ(*(*source)->next(pair), Next::kPicture);
+  ASSERT_GE(pair.sequence, 63u);
+  EXPECT_EQ((*source)->dropped(), static_cast<std::int64_t>(pair.sequence) - 1);
+  EXPECT_NEAR(static_cast<double>(pair.left.t_ns - start_ns), static_cast<double>(pair.sequence) * 1e9 / 30, 100);
+  const auto turn = static_cast<int>(pair.sequence % 118);
+  EXPECT_EQ(pixels(pair.left.pixels), pixels(clip->frame(std::min(turn, 118 - turn)).pair.left.pixels));
+}
+
+TEST(SyntheticClip, LiveRefusesWhatCannotBe) {
+  for (const auto& [name, words] : std::map<std::string, std::string>{{"synthetic:dance", "no script 'dance'"},
+                                                                      {"synthetic:wave:64", "not WIDTHxHEIGHT"},
+                                                                      {"synthetic:wave:64x48x3", "not WIDTHxHEIGHT"},
+                                                                      {"synthetic:wave:0x48", "0x48"}}) {
+    const auto source = open_pairs(name, "");
+    ASSERT_FALSE(source) << name;
+    EXPECT_NE(source.error().what.find(words), std::string::npos) << source.error().what;
   }
 }
 

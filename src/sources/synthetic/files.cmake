@@ -6,6 +6,7 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/figure_textures.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/furniture.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/lens.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/live_clip.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/light.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/mounting.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/noise.cpp

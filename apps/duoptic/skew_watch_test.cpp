@@ -1,0 +1,49 @@
+// The cost of skew by numbers worked out by hand, and when it is worth a word.
+#include "skew_watch.h"
+
+#include <gtest/gtest.h>
+
+namespace duo::app {
+namespace {
+
+TEST(Skew, DepthErrorByHand) {
+  EXPECT_DOUBLE_EQ(skew_depth_error_m(2, 1, 0.001, 0.125), 0.016);  // 2 m away, 1 m/s, 1 ms, baseline 125 mm: 16 mm
+  EXPECT_DOUBLE_EQ(skew_depth_error_m(1, -0.5, 0.016, 0.1), -0.08);
+  EXPECT_DOUBLE_EQ(skew_depth_error_m(3, 1, 0, 0.1), 0);
+}
+
+/// Tells a watch of a hand at 2 m that was at x_m.
+std::optional<std::string> told(SkewWatch& watch, double t_s, double x_m, double skew_ms,
+                                JointState state = JointState::kSeen) {
+  Picture picture;
+  Frame frame;
+  frame.skew_ns = static_cast<TimeNs>(skew_ms * 1e6);
+  std::vector<ArmPose> arms(1);
+  arms[0][Joint::kHand] = {.p_in_rig_m = {x_m, 0, 2}, .sigma_m = 0.02, .state = state};
+  return watch.see({0, t_s, picture, frame, arms, {}});
+}
+
+TEST(Skew, AWarningWhereItMattersAndNotTooOften) {
+  SkewWatch watch(0.125);
+  EXPECT_FALSE(told(watch, 0, 0, 10));       // no speed yet
+  EXPECT_FALSE(told(watch, 0.1, 0.01, 10));  // 0.1 m/s x 10 ms: 16 mm
+  const auto warning = told(watch, 0.2, 0.11, 10);
+  ASSERT_TRUE(warning);  // 1 m/s: 160 mm
+  EXPECT_NE(warning->find("10.0 ms after"), std::string::npos) << *warning;
+  EXPECT_NE(warning->find("hand moves sideways at 1.0 m/s"), std::string::npos) << *warning;
+  EXPECT_NE(warning->find("160 mm"), std::string::npos) << *warning;
+  EXPECT_FALSE(told(watch, 0.3, 0.21, 10));  // said already
+  EXPECT_FALSE(told(watch, 10.3, 1.21, 1));  // 0.1 m/s
+  EXPECT_TRUE(told(watch, 10.4, 1.31, -10));
+}
+
+TEST(Skew, OnlyWhatIsSeenAndApartInTimeCounts) {
+  SkewWatch watch(0.125);
+  EXPECT_FALSE(told(watch, 0, 0, 10));
+  EXPECT_FALSE(told(watch, 0.1, 0.5, 10, JointState::kInferred));
+  EXPECT_FALSE(told(watch, 0.2, 0.5, 10));
+  EXPECT_FALSE(told(watch, 0.3, 0.7, 0));
+}
+
+}  // namespace
+}  // namespace duo::app

@@ -1,0 +1,34 @@
+// A camera's bytes as a picture.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "sources/camera/device.h"
+#include "sources/libav.h"
+
+namespace duo {
+
+class CameraDecoder {
+ public:
+  /// What is read here, the better first.
+  static constexpr std::array kFourccs = {fourcc_of("YUYV"), fourcc_of("UYVY"), fourcc_of("MJPG")};
+  static bool is_known(std::uint32_t code);
+  static bool is_raw(std::uint32_t code) { return is_known(code) && code != fourcc_of("MJPG"); }
+
+  enum class Outcome : std::uint8_t { kWhole, kDamaged, kOtherSize };
+  /// Nothing but whole pictures of the format's size come out; `into` is undefined otherwise.
+  Outcome decode(const CameraFormat& format, std::string_view bytes, Image<Rgb8>& into);
+
+ private:
+  Outcome decode_raw(const CameraFormat& format, std::string_view bytes, Image<Rgb8>& into);
+  Outcome decode_jpeg(const CameraFormat& format, std::string_view bytes, Image<Rgb8>& into);
+
+  av::Decoder jpeg_;
+  av::Packet packet_{av_packet_alloc()};
+  av::DecodedFrame frame_{av_frame_alloc()};
+  av::ToRgb to_rgb_;
+};
+
+}  // namespace duo

@@ -1,0 +1,164 @@
+// When pictures were taken, and which belong together; at the end two cameras in threads.
+#include <random>
+
+#include "sources/camera/camera.h"
+#include "sources/camera/clock_model.h"
+#include "sources/live/live_pairs.h"
+#include "sources/live/pairing.h"
+#include "tests/camera_desk.h"
+
+namespace duo {
+namespace {
+
+using namespace test;  // NOLINT: the desk and its cameras
+
+TEST(Clock, JitterAndLatenessAreSmoothed) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> jitter_ns(-3e6, 3e6);
+  ClockModel clock(1.0 / 30);
+  constexpr double kTrueFrame_ns = 33'333'333 * 1.00005;  // 50 ppm slow
+  double worst_ns = 0, sum_sq = 0;
+  int used = 0;
+  for (int n = 0; n < 2000; ++n) {
+    if (n % 37 == 5) continue;  // lost
+    const double late_ns = n % 20 == 7 ? 15e6 : 0;
+    const double truth_ns = 5e9 + n * kTrueFrame_ns;
+    const double off_ns =
+        static_cast<double>(clock.capture_ns(n, std::llround(truth_ns + jitter_ns(random) + late_ns))) - truth_ns;
+    if (n < 90) continue;
+    worst_ns = std::max(worst_ns, std::abs(off_ns));
+    sum_sq += off_ns * off_ns;
+    ++used;
+  }
+  EXPECT_LT(worst_ns, 1e6);
+  EXPECT_LT(std::sqrt(sum_sq / used), 0.4e6);
+  EXPECT_NEAR(clock.rate(), 1.00005, 1.5e-4);
+  EXPECT_NEAR(clock.jitter_ns(), 1.73e6, 0.3e6);
+}
+
+TEST(Clock, ANewRateAndAJumpAreFollowed) {
+  ClockModel clock(1.0 / 30);
+  TimeNs t_ns = 1'000'000'000, last_ns = 0;
+  for (int n = 0; n < 300; ++n) {
+    t_ns += n < 100 ? 33'333'333 : 66'666'666;  // a camera that exposes longer in the dark
+    if (n == 200) t_ns += 33'333'333 * 5;       // and one that does not count what it lost
+    const TimeNs given_ns = clock.capture_ns(n, t_ns);
+    EXPECT_GT(given_ns, last_ns);
+    last_ns = given_ns;
+    const bool soon_after = (n >= 100 && n < 103) || (n >= 200 && n < 203);
+    if (soon_after) continue;
+    EXPECT_NEAR(static_cast<double>(given_ns - t_ns), 0, 1e6) << n;
+  }
+}
+
+Picture taken_at(double ms, std::uint64_t n = 0) {
+  Picture picture;
+  picture.t_ns = std::llround(ms * 1e6);
+  picture.sequence = n;
+  return picture;
+}
+
+TEST(Pairs, TheNearestWithinHalfAFrameAndEachOnce) {
+  Pairing pairing(1.0 / 30);
+  const auto add = [&](Side side, double ms) {
+    Picture picture = taken_at(ms);
+    pairing.add(side, picture);
+  };
+  Pair pair;
+  const auto expect_pair = [&](double left_ms, double right_ms) {
+    ASSERT_TRUE(pairing.ready());
+    pairing.take(pair);
+    EXPECT_EQ(pair.left.t_ns, std::llround(left_ms * 1e6));
+    EXPECT_EQ(pair.right.t_ns, std::llround(right_ms * 1e6));
+  };
+  add(Side::kLeft, 0);
+  add(Side::kLeft, 33.3);
+  EXPECT_FALSE(pairing.ready());
+  add(Side::kRight, 23.3);  // nearer to the second
+  expect_pair(33.3, 23.3);
+  EXPECT_EQ(pairing.lonely(), 1);
+  add(Side::kRight, 56.6);
+  add(Side::kLeft, 66.6);
+  add(Side::kRight, 90);
+  add(Side::kLeft, 100);  // nobody took the pair before
+  expect_pair(100, 90);
+  EXPECT_EQ(pairing.dropped(), 1);
+  EXPECT_EQ(pair.sequence, 2u);
+  for (int i = 0; i < 10; ++i) add(Side::kLeft, 133 + 33.3 * i);  // the right camera is away
+  EXPECT_FALSE(pairing.ready());
+  add(Side::kRight, 440);
+  expect_pair(133 + 33.3 * 9, 440);
+}
+
+/// Two cameras in threads, on a clock ten times as fast as the machine's: whatever the threads do, a pair's pictures are the
+/// two that were taken nearest, and its skew is true.
+TEST(LivePairs, RightPairsWithTheirTrueSkewThroughJitterLossesAndUnplugging) {
+  Desk desk;
+  desk.speed = 10;
+  constexpr TimeNs kSkew = 9 * kMs;
+  desk.cameras[1].phase_ns = kSkew;
+  for (std::size_t i = 0; i < 2; ++i) {
+    desk.cameras[i].jitter_ns = [i](std::int64_t n) {
+      std::mt19937 random(static_cast<unsigned>(2 * n) + static_cast<unsigned>(i));
+      return std::uniform_int_distribution<std::int64_t>(-1 * kMs, 1 * kMs)(random);
+    };
+    desk.cameras[i].loses = [i](std::int64_t n) { return n % 31 == 3 + static_cast<std::int64_t>(i); };
+  }
+  auto both = open_cameras(desk.calls, "camera:0", "camera:2", kWish);
+  ASSERT_TRUE(both) << both.error().what;
+  const auto pairs = make_live_pairs(std::move((*both)[0]), std::move((*both)[1]));
+  EXPECT_TRUE(pairs->live());
+  Pair pair;
+  int given = 0, right = 0;
+  const auto run_until = [&](TimeNs end_ns, bool judge) {
+    while (desk.now() < end_ns) {
+      const auto next = pairs->next(pair);
+      ASSERT_TRUE(next) << next.error().what;
+      if (*next != Next::kPicture || !judge) continue;
+      ++given;
+      EXPECT_EQ(number_in(pair.left), number_in(pair.right));
+      right += std::abs(pair.right.t_ns - pair.left.t_ns - kSkew) < 1 * kMs;
+    }
+  };
+  run_until(1500 * kMs, false);  // the clocks of the cameras are learnt
+  run_until(5000 * kMs, true);
+  EXPECT_GT(given, 30);
+  EXPECT_GE(right, given * 99 / 100);
+
+  desk.plugged[1] = false;
+  for (int i = 0; i < 100 && pairs->warning().find("camera:2 is away") == std::string::npos; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_NE(pairs->warning().find("camera:2 is away since"), std::string::npos) << pairs->warning();
+  while (*pairs->next(pair) == Next::kPicture) {
+  }  // the last one may not be taken yet
+  desk.plugged[1] = true;
+  const TimeNs back_ns = desk.now();
+  while (*pairs->next(pair) != Next::kPicture) ASSERT_LT(desk.now() - back_ns, 20'000 * kMs);  // 2 s of the machine's
+  std::printf("a pair again %.2f s after the camera was plugged in\n", static_cast<double>(desk.now() - back_ns) * 1e-9);
+  EXPECT_NE(pairs->warning().find("camera:2 is back since"), std::string::npos) << pairs->warning();
+}
+
+/// A thousand times: whatever is unplugged in which moment, nothing hangs, and pairs come again; the end may come while one is
+/// away.
+TEST(LivePairs, BothUnpluggedOverAndOver) {
+  Desk desk;
+  desk.speed = 100;
+  auto both = open_cameras(desk.calls, "camera:0", "camera:2", kWish);
+  ASSERT_TRUE(both) << both.error().what;
+  const auto pairs = make_live_pairs(std::move((*both)[0]), std::move((*both)[1]));
+  Pair pair;
+  std::mt19937 random(1);
+  for (int i = 0; i < 1000; ++i) {
+    auto& plugged = desk.plugged[random() % 2];
+    plugged = false;
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 1000));
+    plugged = true;
+    if (i % 50 != 0) continue;
+    int tries = 0;
+    while (*pairs->next(pair) != Next::kPicture) ASSERT_LT(++tries, 20) << pairs->warning();
+  }
+  desk.plugged[1] = false;
+}
+
+}  // namespace
+}  // namespace duo

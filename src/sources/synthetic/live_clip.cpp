@@ -1,0 +1,123 @@
+#include "sources/synthetic/live_clip.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "duoptic/synthetic.h"
+
+namespace duo {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::string_view kName = "synthetic";
+constexpr int kPairs = 60;  // two seconds: as long as people wait for them, and long enough to move an arm
+constexpr std::chrono::nanoseconds kPeriod{1'000'000'000 / 30};
+
+class LiveClip final : public PairSource {
+ public:
+  explicit LiveClip(SyntheticClip clip)
+      : clip_(std::move(clip)), size_(clip_.setup().size), rig_(clip_.rig()), pairs_(kPairs), renderer_([this] { render(); }) {}
+  ~LiveClip() override {
+    stop_ = true;
+    renderer_.join();
+  }
+  Size size() const override { return size_; }
+  std::int64_t count() const override { return 0; }
+  bool still() const override { return false; }
+  bool live() const override { return true; }
+  std::optional<Rig> rig() const override { return rig_; }
+  std::int64_t dropped() const override { return dropped_; }
+  std::string warning() const override {
+    return rendered_ < kPairs ? fmt::format("rendering the synthetic person: {} of {} pairs", rendered_.load(), kPairs)
+                              : std::string();
+  }
+
+  Result<Next> next(Pair& into) override {
+    if (!wait_for_pairs()) return Next::kNothing;
+    if (!start_) start_ = Clock::now();
+    const std::int64_t due = std::max((Clock::now() - *start_) / kPeriod, last_ + 1);
+    std::this_thread::sleep_until(*start_ + due * kPeriod);
+    dropped_ += due - last_ - 1;
+    last_ = due;
+    show(due, into);
+    return Next::kPicture;
+  }
+
+ private:
+  void render() {
+    for (int i = 0; i < kPairs && !stop_; ++i) {
+      pairs_[static_cast<std::size_t>(i)] = clip_.frame(i).pair;
+      const std::lock_guard lock(mutex_);
+      rendered_ = i + 1;
+    }
+    changed_.notify_all();
+  }
+  bool wait_for_pairs() {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, std::chrono::milliseconds(500), [this] { return rendered_ == kPairs; });
+  }
+  void show(std::int64_t number, Pair& into) const {
+    const auto turn = static_cast<int>(number % (2 * kPairs - 2));
+    const Pair& shown = pairs_[static_cast<std::size_t>(std::min(turn, 2 * kPairs - 2 - turn))];
+    const TimeNs t_ns = (*start_ + number * kPeriod).time_since_epoch() / std::chrono::nanoseconds(1);
+    for (Picture Pair::*side : {&Pair::left, &Pair::right}) {
+      Picture& picture = into.*side;
+      if (picture.pixels.size() != size_) picture.pixels = Image<Rgb8>(size_);
+      for (int y = 0; y < size_.height; ++y) std::copy_n((shown.*side).pixels.row(y), size_.width, picture.pixels.row(y));
+      picture.t_ns = t_ns;
+      picture.sequence = static_cast<std::uint64_t>(number);
+    }
+    into.sequence = static_cast<std::uint64_t>(number);
+  }
+
+  SyntheticClip clip_;
+  const Size size_;
+  const Rig rig_;
+  std::vector<Pair> pairs_;
+  std::atomic<int> rendered_ = 0;
+  std::atomic<bool> stop_ = false;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<Clock::time_point> start_;
+  std::int64_t last_ = -1;  // pair that was given
+  std::atomic<std::int64_t> dropped_ = 0;
+  std::thread renderer_;  // last: it uses all of the above
+};
+
+}  // namespace
+
+bool is_synthetic_name(std::string_view name) {
+  return name.starts_with(kName) && (name.size() == kName.size() || name[kName.size()] == ':');
+}
+
+Result<std::unique_ptr<PairSource>> open_live_clip(std::string_view name) {
+  SyntheticClipSetup setup{.script = "wave"};
+  setup.frames = kPairs;
+  if (name.size() > kName.size()) {
+    const std::string rest(name.substr(kName.size() + 1));
+    const std::size_t colon = std::min(rest.find(':'), rest.size());
+    setup.script = rest.substr(0, colon);
+    char more = 0;
+    if (colon < rest.size() && std::sscanf(rest.c_str() + colon, ":%dx%d%c", &setup.size.width, &setup.size.height, &more) != 2)
+      return Error{ErrorCode::kBadInput,
+                   fmt::format("cannot open {}: '{}' is not WIDTHxHEIGHT; synthetic:wave:320x240 is an example", name,
+                               rest.substr(colon + 1))};
+  }
+  const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  DUO_TRY_ASSIGN(SyntheticClip clip, SyntheticClip::open(setup, threads));
+  return std::unique_ptr<PairSource>(std::make_unique<LiveClip>(std::move(clip)));
+}
+
+}  // namespace duo
