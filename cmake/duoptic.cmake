@@ -10,14 +10,20 @@ target_compile_options(duoptic_flags INTERFACE -Wall -Wextra -Werror -ffp-contra
 set(DUO_DISABLED_TARGETS "HWY_SSSE3|HWY_AVX3" CACHE STRING "Instruction sets not to compile for, as Highway's HWY_ names joined by |")
 target_compile_definitions(duoptic_flags INTERFACE HWY_BROKEN_EMU128=0 HWY_WANT_AVX3_DL "HWY_DISABLED_TARGETS=(${DUO_DISABLED_TARGETS})")
 
+# SPIR-V as numbers to include, for the library's kernels or for another target and an older Vulkan.
 function(duoptic_shader source)
+  cmake_parse_arguments(ARG "" "TARGET;VULKAN" "" ${ARGN})
+  if(NOT ARG_TARGET)
+    set(ARG_TARGET duoptic)
+    set(ARG_VULKAN 1.3)
+  endif()
   get_filename_component(name ${source} NAME)
   set(out ${PROJECT_BINARY_DIR}/spirv/${name}.inc)
   add_custom_command(OUTPUT ${out}
     COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/spirv
-    COMMAND ${DUO_GLSLC} -O --target-env=vulkan1.3 -I ${PROJECT_SOURCE_DIR}/src -mfmt=num -MD -MF ${out}.d -o ${out} ${source}
+    COMMAND ${DUO_GLSLC} -O --target-env=vulkan${ARG_VULKAN} -I ${PROJECT_SOURCE_DIR}/src -mfmt=num -MD -MF ${out}.d -o ${out} ${source}
     DEPENDS ${source} DEPFILE ${out}.d COMMENT "SPIR-V ${name}" VERBATIM)
-  target_sources(duoptic PRIVATE ${out})
+  target_sources(${ARG_TARGET} PRIVATE ${out})
 endfunction()
 
 if(DUO_TESTS)

@@ -29,12 +29,12 @@ class Ahead {
     thread_.join();
   }
 
-  /// As `make`; not to be called again after the end or an error.
+  /// As `make`, but only a picture changes `into`; not to be called again after the end or an error.
   Result<Next> next(T& into) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return made_.has_value(); });
-    std::swap(into, ahead_);
     Result<Next> next = *std::exchange(made_, std::nullopt);
+    if (next && *next == Next::kPicture) std::swap(into, ahead_);
     lock.unlock();
     changed_.notify_all();
     return next;
@@ -43,6 +43,13 @@ class Ahead {
   void wait() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return made_.has_value(); });
+  }
+  /// Before the end: calls `change` with what is ready, null when that is nothing, while nothing goes on in the thread.
+  template <class F>
+  void amend(F&& change) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return made_.has_value(); });
+    change(*made_ && **made_ == Next::kPicture ? &ahead_ : nullptr);
   }
 
  private:

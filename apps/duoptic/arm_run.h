@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command.h"
@@ -10,6 +12,7 @@
 #include "duoptic/source.h"
 #include "duoptic/tracker.h"
 #include "frame_ahead.h"
+#include "input.h"
 
 namespace duo::app {
 
@@ -26,16 +29,20 @@ class ArmRun {
  public:
   static constexpr double kNearest_m = 0.5;
 
-  /// Pairs before number `first` are passed over; `sources` names them for the sinks.
-  /// Errors  those of Engine::prepare() and Tracker::prepare()
-  static Result<ArmRun> open(std::unique_ptr<PairSource> pairs, std::vector<std::string> sources, const Rig& rig,
-                             const ArmOptions& options, std::int64_t first = 0);
+  /// Pairs before number `first` are passed over.
+  /// Errors  no rig; those of Engine::prepare() and Tracker::prepare()
+  static Result<ArmRun> open(Input input, const ArmOptions& options, std::int64_t first = 0);
 
   Result<Next> next() { return frames_->next(); }
   const Frame& frame() const { return *frames_->last().frame; }
   Result<void> select(const std::vector<ArmSelection>& arms) { return tracker_->select(frame(), arms); }
   const std::vector<ArmPose>& track();
+  void reset() { tracker_->reset(); }
 
+  /// Other parameters of the matcher, by name; the last frame is made anew, tracking goes on.
+  Result<void> set(const std::vector<std::pair<std::string, double>>& parameters);
+
+  const Rig& rig() const { return *setup_.rig; }
   FrameAhead& frames() const { return *frames_; }
   const Recording& recording() const { return recording_; }
   /// The last pair and its frame, as sinks take them.
@@ -44,6 +51,7 @@ class ArmRun {
 
  private:
   ArmRun() = default;
+  Setup setup_;
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<FrameAhead> frames_;  // after the engine, which it uses to its end
   std::unique_ptr<Tracker> tracker_;

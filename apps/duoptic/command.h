@@ -60,6 +60,9 @@ Command add(CLI::App& app);
 namespace rig {
 Command add(CLI::App& app);
 }
+namespace view {
+Command add(CLI::App& app);
+}
 namespace cameras {
 Command add(CLI::App& app);
 }

@@ -7,8 +7,8 @@
 
 #include "command.h"
 #include "duoptic/calibrate.h"
-#include "duoptic/source.h"
 #include "frame_files.h"
+#include "input.h"
 #include "interrupt.h"
 #include "progress.h"
 #include "timing.h"
@@ -110,11 +110,10 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(setup.rig, load_rig(options.rig));
   }
-  DUO_TRY_ASSIGN(const auto pairs,
-                 open_pairs(options.left, options.right, setup.rig ? CameraWish{.size = setup.rig->left.size} : CameraWish{}));
-  if (!setup.rig) setup.rig = pairs->rig();
+  DUO_TRY_ASSIGN(const Input input, open_input(options.left, options.right, setup.rig));
+  setup.rig = input.rig;
   if (options.near_m > 0 && !setup.rig) throw CLI::RequiredError("--rig");
-  setup.size = pairs->size();
+  setup.size = input.pairs->size();
   setup.max_disparity = options.max_disparity;
   if (setup.rig) {
     if (options.near_m > 0) {
@@ -126,7 +125,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   setup.wants.confidence = options.confidence;
   DUO_TRY_ASSIGN(const auto engine, make_engine(options.engine.engine, options.engine.threads));
   DUO_TRY(engine->prepare(setup));
-  DUO_TRY_ASSIGN(const Summary summary, process(*pairs, *engine, options, app));
+  DUO_TRY_ASSIGN(const Summary summary, process(*input.pairs, *engine, options, app));
   print(summary, *engine, options, setup);
   if (!summary.warning.empty()) say(app, "warning: " + summary.warning);
   return summary.end == Next::kCut ? Exit::kCut : Exit::kOk;

@@ -35,16 +35,30 @@ class FrameAhead {
   bool live() const { return source_->live(); }
   /// As PairSource::next(), into last(); not to be called again after the end or an error.
   Result<Next> next() { return frames_->next(last_); }
-  /// Lives until the next next().
+  /// Lives until next() gives another.
   const Matched& last() const { return last_; }
   /// Before the end: until the next frame is ready; matching then rests.
   void wait() { frames_->wait(); }
+  /// Before the end: another setup for the engine. The last frame and the one that is ready are made anew.
+  ///
+  /// Errors  those of Engine::prepare(); then all is as it was
+  Result<void> prepare(const Setup& setup) {
+    Result<void> prepared;
+    frames_->amend([&](Matched* ahead) {
+      prepared = engine_.prepare(setup);
+      if (!prepared) return;
+      if (last_.frame != nullptr) make_frame(last_);
+      if (ahead != nullptr) make_frame(*ahead);
+    });
+    return prepared;
+  }
 
   TimeNs start_ns() const { return start_ns_; }  // of the first pair, once next() gave one
   /// Pairs that were read before the end, and what PairSource::warning() says then; live, at any time.
   std::int64_t read() const { return read_; }
   std::string warning() const { return source_->warning(); }
   std::int64_t dropped() const { return source_->dropped(); }
+  bool still() const { return source_->still(); }
 
  private:
   Result<Next> match(Matched& into) {
@@ -53,11 +67,14 @@ class FrameAhead {
       if (next != Next::kPicture) return next;
       if (read_ == 0) start_ns_ = into.pair.left.t_ns;
     } while (read_++ < first_);
-    into.engine_ms = timed([&] {
-                       engine_.submit(into.pair);
-                       into.frame = &engine_.collect();
-                     }).wall_ms;
+    make_frame(into);
     return Next::kPicture;
+  }
+  void make_frame(Matched& of) {
+    of.engine_ms = timed([&] {
+                     engine_.submit(of.pair);
+                     of.frame = &engine_.collect();
+                   }).wall_ms;
   }
 
   std::unique_ptr<PairSource> source_;

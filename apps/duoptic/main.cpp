@@ -58,6 +58,9 @@ int run(int argc, char** argv) {
   const std::vector<Command> commands = {depth::add(app),     track::add(app), eval::add(app),   bench::add(app),
                                          demo::add(app),      synth::add(app), board::add(app),  rig::add(app),
                                          calibrate::add(app), play::add(app),  record::add(app), cameras::add(app),
+#ifdef DUO_VIEWER
+                                         view::add(app),
+#endif
                                          version::add(app)};
   const auto chosen = [&]() -> const Command* {
     for (const Command& command : commands)

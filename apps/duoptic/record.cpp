@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "duoptic/source.h"
+#include "input.h"
 #include "interrupt.h"
 #include "progress.h"
 #include "rig_report.h"
@@ -74,15 +75,16 @@ void print(const Summary& summary, const Recorder& recorder, const PairSource& p
 }
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
-  DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right));
   RecorderSetup setup;
-  setup.frame_s = pairs->frame_s();
-  setup.rig = pairs->rig();
-  setup.replace = options.force;
-  if (pairs->live()) setup.date = date_now();
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(setup.rig, load_rig(options.rig));
   }
+  DUO_TRY_ASSIGN(const Input input, open_input(options.left, options.right, setup.rig));
+  const auto& pairs = input.pairs;
+  setup.rig = input.rig;
+  setup.frame_s = pairs->frame_s();
+  setup.replace = options.force;
+  if (pairs->live()) setup.date = date_now();
   if (setup.rig && setup.rig->left.size != pairs->size())
     return Error{
         ErrorCode::kBadInput,

@@ -169,13 +169,10 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(rig, load_rig(options.rig));
   }
-  DUO_TRY_ASSIGN(auto pairs, open_pairs(options.left, options.right, rig ? CameraWish{.size = rig->left.size} : CameraWish{}));
-  if (!rig) rig = pairs->rig();
-  if (!rig) throw CLI::RequiredError("--rig");  // what is no recording does not bring its own
-  if (options.realtime && !pairs->live()) pairs = in_real_time(std::move(pairs));
-  std::vector<std::string> sources = {options.left};
-  if (!options.right.empty()) sources.push_back(options.right);
-  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(pairs), std::move(sources), *rig, options.arm, options.at_frame));
+  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, rig));
+  if (!input.rig) throw CLI::RequiredError("--rig");  // most sources do not bring their own
+  if (options.realtime && !input.pairs->live()) input.pairs = in_real_time(std::move(input.pairs));
+  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(input), options.arm, options.at_frame));
   std::optional<Interrupt> interrupt;
   if (run.recording().live) interrupt.emplace();
   Events events(app);

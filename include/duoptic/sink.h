@@ -2,6 +2,7 @@
 // frame after frame and gives its file the name at the end.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -35,6 +36,25 @@ DisparityRange disparity_range(View<const std::uint16_t> d_q4);
 /// Disparity as colours: the Turbo map (Mikhailov 2019), near is red, none is black, with a legend; the legend is in
 /// metres when `rectified` is given, else in px. The range of the colours is disparity_range().
 Image<Rgb8> draw_disparity(View<const std::uint16_t> d_q4, const Rectified* rectified);
+
+/// Disparity in the colours of draw_disparity() over a given range; black where there is none.
+///
+/// Shape  both H x W
+void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range, View<Rgb8> dst);
+
+/// The shades of hand, elbow and shoulder in draw_arm_region().
+inline constexpr std::array<Rgb8, kArmJoints> kJointShades = {Rgb8{190, 255, 170}, Rgb8{70, 190, 90}, Rgb8{24, 112, 62}};
+
+/// The rectified picture, dark and gray, with the arm's pixels in the shade of the joint they are nearest to. The arm is what
+/// lies within a hand's, forearm's or upper arm's radius of the bones between joints that are not lost.
+///
+/// Shape  dst like the frame's maps; of these it needs disparity and colour
+void draw_arm_region(const Frame& frame, const Rectified& rectified, const std::vector<ArmPose>& arms, View<Rgb8> dst);
+
+/// Hue as colour, saturation as brightness.
+///
+/// Shape  src and dst H x W
+void draw_hue(View<const Rgb8> src, View<Rgb8> dst);
 
 Result<void> write_png(View<const Rgb8> picture, const std::filesystem::path& path);
 Result<void> write_png(View<const std::uint8_t> picture, const std::filesystem::path& path);

@@ -65,7 +65,7 @@ void draw_arm_region(const Frame& frame, const Rectified& rectified, const std::
       // Some of the picture's own light keeps fingers and folds visible.
       const int light = 176 + luma * 80 / 255;
       const auto lit = [light](std::uint8_t channel) { return static_cast<std::uint8_t>(channel * light >> 8); };
-      dst.at(y, x) = {lit(kShades[part].r), lit(kShades[part].g), lit(kShades[part].b)};
+      dst.at(y, x) = {lit(kJointShades[part].r), lit(kJointShades[part].g), lit(kJointShades[part].b)};
     }
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/check.h"
 #include "duoptic/sink.h"
 #include "sinks/disparity_colors.h"
 #include "sinks/turbo.h"
@@ -55,12 +56,16 @@ DisparityRange disparity_range(View<const std::uint16_t> d_q4) {
   return {far_px, std::max(near_px, far_px + 1)};
 }
 
+// A table, because there are far fewer disparities than pixels.
 void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range, View<Rgb8> dst) {
+  DUO_CHECK(d_q4.size() == dst.size());
+  std::vector<Rgb8> colors(Disparity::kNone + 1u);
+  const auto near_q4 =
+      range.empty() ? 0u : std::min<unsigned>(static_cast<unsigned>(std::max(0.0, 16 * range.near_px)) + 1, Disparity::kNone);
+  for (unsigned d = 0; d < near_q4; ++d) colors[d] = color_at(position(range, d / 16.0));
+  if (!range.empty()) std::fill(colors.begin() + near_q4, colors.end() - 1, color_at(1));
   for (int y = 0; y < d_q4.height(); ++y)
-    for (int x = 0; x < d_q4.width(); ++x) {
-      const std::uint16_t d = d_q4.at(y, x);
-      dst.at(y, x) = d == Disparity::kNone || range.empty() ? Rgb8{} : color_at(position(range, d / 16.0));
-    }
+    for (int x = 0; x < d_q4.width(); ++x) dst.at(y, x) = colors[d_q4.at(y, x)];
 }
 
 void draw_legend(View<Rgb8> dst, const DisparityRange& range, const Rectified* rectified) {

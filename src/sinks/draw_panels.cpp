@@ -152,7 +152,7 @@ void put_joints(View<Rgb8> dst, const std::vector<ArmPose>& arms, const Layout& 
 void put_shades(View<Rgb8> dst, const Layout& layout) {
   for (std::size_t j = 0; j < kArmJoints; ++j) {
     const int x = layout.scaled(10) + static_cast<int>(j) * layout.scaled(120);
-    const Rgb8 c = kShades[j];
+    const Rgb8 c = kJointShades[j];
     cv::rectangle(mat_of(dst), cv::Rect(x, layout.scaled(14), layout.scaled(18), layout.scaled(16)), cv::Scalar(c.r, c.g, c.b),
                   cv::FILLED);
     put_text(dst, std::string(kJointNames[j]), {x + layout.scaled(26), layout.scaled(28)}, kText, layout);

@@ -1,0 +1,334 @@
+#include "panels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace duo::app::view {
+namespace {
+
+constexpr float kTitle = 28, kCaption = 34, kMargin = 8;  // heights above and below a picture, and around it
+constexpr double kBoxHalf_m = 0.05;                       // of the box around a joint: about a hand
+
+/// As wide as 12-bit colours need, a pixel high.
+Image<Rgb8> turbo_strip() {
+  constexpr int kSteps = 256;
+  Image<std::uint16_t> ramp({kSteps, 1});
+  for (int x = 0; x < kSteps; ++x) ramp.at(0, x) = static_cast<std::uint16_t>(x * 16);
+  Image<Rgb8> out(ramp.size());
+  color_disparity(ramp, {0, kSteps - 1.0}, out);
+  return out;
+}
+
+/// The hues as draw_hue() shows them, from pixels that have them.
+Image<Rgb8> hue_strip() {
+  constexpr int kSteps = 6 * 32;
+  Image<Rgb8> pure({kSteps, 1}), out({kSteps, 1});
+  for (int x = 0; x < kSteps; ++x) {
+    const auto channel = [x](int shift) {
+      const int at = (x + shift + kSteps) % kSteps;  // trapezoid: up, high, high, down, low, low
+      return static_cast<std::uint8_t>(std::clamp(std::abs(at - kSteps / 2) - kSteps / 6, 0, kSteps / 6) * 255 / (kSteps / 6));
+    };
+    pure.at(0, x) = {channel(0), channel(-kSteps / 3), channel(kSteps / 3)};
+  }
+  draw_hue(pure, out);
+  return out;
+}
+
+ImVec2 inset(ImVec2 p, float d) { return {p.x + d, p.y + d}; }
+
+}  // namespace
+
+Panels::Panels(Textures& textures, const Recording& recording, float scale)
+    : textures_(textures), recording_(recording), scale_(scale) {}
+
+Result<void> Panels::show(std::shared_ptr<const Shown> shown) {
+  if (shown == shown_) return {};
+  if (shows_ == 0) {
+    DUO_TRY(textures_.set(turbo_strip_, turbo_strip()));
+    DUO_TRY(textures_.set(hue_strip_, hue_strip()));
+  }
+  const Frame& frame = shown->frame;
+  const auto& d_q4 = frame.disparity.d_q4;
+  // Colours that mean the same from frame to frame: the range follows slowly, with room for an arm stretched out to the
+  // cameras.
+  constexpr int kEvery = 15;
+  constexpr double kNearer = 1.25, kFarther = 3, kFollow = 0.3;
+  if (shows_++ % kEvery == 0)
+    if (const DisparityRange now = disparity_range(d_q4); !now.empty()) {
+      const DisparityRange wide = {std::max(now.far_px, now.near_px / kFarther), now.near_px * kNearer};
+      const double follow = range_.empty() ? 1 : kFollow;
+      range_ = {range_.far_px + follow * (wide.far_px - range_.far_px),
+                range_.near_px + follow * (wide.near_px - range_.near_px)};
+    }
+  if (orbit_.middle_m <= 0 || shows_ == 1) orbit_.middle_m = std::max(0.3, foreground_m(d_q4, recording_.rectified));
+  DUO_TRY(textures_.set(camera_, shown->left.pixels));
+  if (painted_.size() != d_q4.size()) painted_ = Image<Rgb8>(d_q4.size());
+  color_disparity(d_q4, range_, painted_);
+  DUO_TRY(textures_.set(depth_, painted_));
+  draw_arm_region(frame, recording_.rectified, shown->arms, painted_);
+  DUO_TRY(textures_.set(region_, painted_));
+  draw_hue(frame.color, painted_);
+  DUO_TRY(textures_.set(hue_, painted_));
+  shown_ = std::move(shown);
+  cloud_stale_ = true;
+  return {};
+}
+
+Result<std::optional<Clicks::Click>> Panels::draw(ImVec2 from, ImVec2 to, const Clicks& clicks) {
+  const float gap = 8 * scale_, half = (to.x - from.x - gap) / 2, third = (to.x - from.x - 2 * gap) / 3;
+  // The upper row is as high as its pictures need, but leaves something to the lower one.
+  const float high =
+      (half - 2 * kMargin * scale_) * static_cast<float>(recording_.size.height) / static_cast<float>(recording_.size.width);
+  const float middle_y = from.y + std::min(high + (kTitle + kCaption) * scale_, 0.62f * (to.y - from.y));
+  const auto top = [&](int i) { return ImVec2(from.x + static_cast<float>(i) * (half + gap), from.y); };
+  const auto bottom = [&](int i) { return ImVec2(from.x + static_cast<float>(i) * (third + gap), middle_y + gap); };
+  const std::string when = shown_ ? fmt::format("frame {}   {:.2f} s", shown_->number, shown_->t_s) : "";
+  const auto click = draw_camera(cell(top(0), {from.x + half, middle_y}, "Left camera", when), clicks);
+  draw_depth(cell(top(1), {to.x, middle_y}, "Depth", "metres"));
+  DUO_TRY(draw_cloud_panel(cell(bottom(0), {bottom(0).x + third, to.y}, "Points", "drag, wheel, double click")));
+  draw_region(cell(bottom(1), {bottom(1).x + third, to.y}, "Arm region", "by nearest joint"));
+  draw_hue_panel(cell(bottom(2), {to.x, to.y}, "Hue and saturation", "degrees; brightness = saturation"));
+  return click;
+}
+
+Panels::Cell Panels::cell(ImVec2 from, ImVec2 to, const char* title, const std::string& note) const {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float title_height = kTitle * scale_, caption_height = kCaption * scale_, margin = kMargin * scale_;
+  list.AddRectFilled(from, to, kPanel, 6 * scale_);
+  ImGui::PushFont(title_font());
+  list.AddText({from.x + margin, from.y + 6 * scale_}, kText, title);
+  const float title_width = ImGui::CalcTextSize(title).x;
+  ImGui::PopFont();
+  const float width = ImGui::CalcTextSize(note.c_str()).x;
+  if (title_width + width + 4 * margin < to.x - from.x)
+    list.AddText({to.x - margin - width, from.y + 6 * scale_}, kFaint, note.c_str());
+  return {{from.x + margin, from.y + title_height},
+          {to.x - margin, to.y - caption_height},
+          {from.x + margin, to.y - caption_height + 3 * scale_},
+          to.x - from.x - 2 * margin};
+}
+
+Panels::Fit Panels::picture(const Cell& cell, const Texture& texture) {
+  const float width = cell.to.x - cell.from.x, height = cell.to.y - cell.from.y;
+  const auto across = static_cast<float>(std::max(texture.size().width, 1)),
+             down = static_cast<float>(std::max(texture.size().height, 1));
+  const float scale = std::max(0.01f, std::min(width / across, height / down));
+  const ImVec2 from = {cell.from.x + (width - across * scale) / 2, cell.from.y + (height - down * scale) / 2};
+  const Fit fit = {from, {from.x + across * scale, from.y + down * scale}, scale};
+  textures_.draw(*ImGui::GetWindowDrawList(), texture, fit.from, fit.to);
+  return fit;
+}
+
+std::optional<Clicks::Click> Panels::draw_camera(const Cell& cell, const Clicks& clicks) {
+  if (!shown_) {
+    ImGui::GetWindowDrawList()->AddText(inset(cell.from, 12 * scale_), kFaint, "waiting for the first pictures ...");
+    return {};
+  }
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const Fit fit = picture(cell, camera_);
+  list.PushClipRect(fit.from, fit.to, true);
+  for (const ArmPose& arm : shown_->arms) draw_skeleton(fit, arm);
+  if (clicks.wanted()) draw_clicks(fit, clicks);
+  list.PopClipRect();
+  if (clicks.wanted())
+    list.AddText({cell.caption.x, cell.caption.y + 5 * scale_}, kAccent, clicks.prompt().c_str());
+  else
+    put_joints(cell);
+  if (!clicks.wanted() || !ImGui::IsWindowHovered() || !ImGui::IsMouseHoveringRect(fit.from, fit.to)) return {};
+  const ImVec2 mouse = ImGui::GetMousePos();
+  text_on_picture(list, {mouse.x + 14 * scale_, mouse.y + 10 * scale_}, kText, clicks.name(clicks.made().size()).c_str());
+  list.AddCircle(mouse, 7 * scale_, kAccent, 0, 2 * scale_);
+  if (!ImGui::IsMouseClicked(ImGuiMouseButton_Left)) return {};
+  return Clicks::Click{(mouse.x - fit.from.x) / fit.scale - 0.5, (mouse.y - fit.from.y) / fit.scale - 0.5};
+}
+
+/// Bones, boxes and rings of one sigma; broken where a joint is not seen.
+void Panels::draw_skeleton(const Fit& fit, const ArmPose& arm) const {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float thick = 4 * scale_, dash = 7 * scale_;
+  for (std::size_t j = 0; j + 1 < kArmJoints; ++j) {
+    const Keypoint &a = arm.joints[j], &b = arm.joints[j + 1];
+    if (a.state == JointState::kLost || b.state == JointState::kLost) continue;
+    const ImVec2 from = fit.place(a.u_px, a.v_px), to = fit.place(b.u_px, b.v_px);
+    if (a.state == JointState::kSeen && b.state == JointState::kSeen)
+      list.AddLine(from, to, kBone, thick);
+    else
+      dashed_line(list, from, to, kBone, thick, dash);
+  }
+  for (std::size_t j = 0; j < kArmJoints; ++j) {
+    const Keypoint& joint = arm.joints[j];
+    if (joint.state == JointState::kLost) continue;
+    const ImVec2 at = fit.place(joint.u_px, joint.v_px);
+    const double px_per_m = fit.scale * recording_.rectified.focal_px / std::max(joint.p_in_rig_m.z, 0.1);
+    const auto half = static_cast<float>(std::clamp(kBoxHalf_m * px_per_m, 5.0, 80.0));
+    const auto ring = static_cast<float>(std::clamp(joint.sigma_m * px_per_m, 3.0, 2000.0));
+    const ImVec2 corners[] = {
+        {at.x - half, at.y - half}, {at.x + half, at.y - half}, {at.x + half, at.y + half}, {at.x - half, at.y + half}};
+    if (joint.state == JointState::kSeen) {
+      list.AddRect(corners[0], corners[2], kBox, 2 * scale_, 0, 2.5f * scale_);
+      list.AddCircle(at, ring, IM_COL32(255, 255, 255, 190), 0, 1.5f * scale_);
+      list.AddCircleFilled(at, 4 * scale_, kBox);
+    } else {
+      for (std::size_t i = 0; i < 4; ++i) dashed_line(list, corners[i], corners[(i + 1) % 4], kBox, 2.5f * scale_, dash / 2);
+      dashed_circle(list, at, ring, IM_COL32(255, 255, 255, 150), 1.5f * scale_, dash / 2);
+    }
+  }
+}
+
+void Panels::draw_clicks(const Fit& fit, const Clicks& clicks) const {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  for (std::size_t i = 0; i < clicks.made().size(); ++i) {
+    const ImVec2 at = fit.place(clicks.made()[i].x_px, clicks.made()[i].y_px);
+    if (i % kArmJoints != 0)
+      list.AddLine(fit.place(clicks.made()[i - 1].x_px, clicks.made()[i - 1].y_px), at, IM_COL32(82, 168, 255, 150),
+                   2 * scale_);
+    list.AddCircleFilled(at, 4 * scale_, kAccent);
+    list.AddCircle(at, 9 * scale_, kAccent, 0, 2 * scale_);
+    text_on_picture(list, {at.x + 14 * scale_, at.y - 8 * scale_}, kText, clicks.name(i).c_str());
+  }
+}
+
+/// "hand 1.32 m ±2 cm" for each joint of the first arm.
+void Panels::put_joints(const Cell& cell) const {
+  if (shown_->arms.empty()) return;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  for (std::size_t j = 0; j < kArmJoints; ++j) {
+    const Keypoint& k = shown_->arms[0].joints[j];
+    const std::string text = k.state == JointState::kLost ? fmt::format("{} lost", kJointNames[j])
+                                                          : fmt::format("{} {:.2f} m \u00b1{:.0f} cm", kJointNames[j],
+                                                                        k.p_in_rig_m.z, std::ceil(100 * k.sigma_m));
+    const float x = cell.caption.x + static_cast<float>(j) * cell.caption_width / kArmJoints;
+    list.AddText({x, cell.caption.y + 5 * scale_}, color_of(k.state), text.c_str());
+  }
+}
+
+void Panels::draw_depth(const Cell& cell) {
+  if (!shown_) return;
+  const Fit fit = picture(cell, depth_);
+  put_depth_legend(cell);
+  if (!ImGui::IsWindowHovered() || !ImGui::IsMouseHoveringRect(fit.from, fit.to)) return;
+  const ImVec2 mouse = ImGui::GetMousePos();
+  const auto& d_q4 = shown_->frame.disparity.d_q4;
+  const int x = std::clamp(static_cast<int>((mouse.x - fit.from.x) / fit.scale), 0, d_q4.width() - 1);
+  const int y = std::clamp(static_cast<int>((mouse.y - fit.from.y) / fit.scale), 0, d_q4.height() - 1);
+  const std::uint16_t d = d_q4.at(y, x);
+  std::string text = "no depth";
+  if (d != Disparity::kNone && d != 0) {
+    const Rectified& r = recording_.rectified;
+    const double per_px_m = r.baseline_m * 16 / d;
+    text = fmt::format("{:.2f} m   x {:+.2f}  y {:+.2f}", r.focal_px * per_px_m, (x - r.cx_px) * per_px_m,
+                       (y - r.cy_px) * per_px_m);
+  }
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddCircle(mouse, 5 * scale_, kText, 0, 1.5f * scale_);
+  const float width = ImGui::CalcTextSize(text.c_str()).x + 20 * scale_;
+  text_on_picture(list, {mouse.x + width > fit.to.x ? mouse.x - width : mouse.x + 14 * scale_, mouse.y + 10 * scale_}, kText,
+                  text.c_str());
+}
+
+/// The colours with round metres below them: what fits first, in the order of importance, stays.
+void Panels::put_depth_legend(const Cell& cell) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 to = {cell.caption.x + cell.caption_width, cell.caption.y + 10 * scale_};
+  if (range_.empty()) return list.AddText(cell.caption, kFaint, "no depth");
+  textures_.draw(list, turbo_strip_, cell.caption, to);
+  const Rectified& r = recording_.rectified;
+  std::vector<std::pair<float, float>> taken;
+  for (const double z_m :
+       {1.0, 2.0, 0.5, 5.0, 3.0, 1.5, 10.0, 0.7, 4.0, 2.5, 0.3, 0.4, 0.6, 0.8, 1.2, 7.0, 0.9, 6.0, 3.5, 1.4, 1.8, 20.0}) {
+    const double share = (r.focal_px * r.baseline_m / z_m - range_.far_px) / (range_.near_px - range_.far_px);
+    if (share < 0 || share > 1) continue;
+    const std::string text = fmt::format("{:g} m", z_m);
+    const float x = cell.caption.x + static_cast<float>(share) * cell.caption_width,
+                half = ImGui::CalcTextSize(text.c_str()).x / 2;
+    const float left = x - half - 6 * scale_, right = x + half + 6 * scale_;
+    if (left < cell.caption.x - 6 * scale_ || right > to.x + 6 * scale_ ||
+        std::any_of(taken.begin(), taken.end(), [&](const auto& other) { return left < other.second && other.first < right; }))
+      continue;
+    taken.emplace_back(left, right);
+    list.AddLine({x, to.y}, {x, to.y + 3 * scale_}, kFaint);
+    list.AddText({x - half, to.y + 3 * scale_}, kText, text.c_str());
+  }
+}
+
+void Panels::turn_cloud(const Cell& cell) {
+  constexpr double kRadiansPerPixel = 0.008, kMost_rad = 1.5;
+  ImGui::SetCursorScreenPos(cell.from);
+  ImGui::InvisibleButton("points", {cell.to.x - cell.from.x, cell.to.y - cell.from.y});
+  const ImGuiIO& io = ImGui::GetIO();
+  if (ImGui::IsItemActive() && !ImGui::IsItemActivated()) {  // not the way to where the button went down
+    orbit_.yaw_rad = std::clamp(orbit_.yaw_rad - kRadiansPerPixel * io.MouseDelta.x / scale_, -kMost_rad, kMost_rad);
+    orbit_.pitch_rad = std::clamp(orbit_.pitch_rad + kRadiansPerPixel * io.MouseDelta.y / scale_, -kMost_rad, kMost_rad);
+  }
+  if (!ImGui::IsItemHovered()) return;
+  orbit_.zoom = std::clamp(orbit_.zoom * std::pow(1.15, io.MouseWheel), 0.3, 6.0);
+  if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
+    orbit_ = {.middle_m = std::max(0.3, foreground_m(shown_->frame.disparity.d_q4, recording_.rectified))};
+}
+
+Result<void> Panels::draw_cloud_panel(const Cell& cell) {
+  const Size size = {static_cast<int>(cell.to.x - cell.from.x),
+                     static_cast<int>(cell.to.y + (kCaption - kMargin) * scale_ - cell.from.y)};
+  if (!shown_ || size.width < 8 || size.height < 8) return {};
+  Cell tall = cell;
+  tall.to.y += (kCaption - kMargin) * scale_;  // no caption
+  turn_cloud(tall);
+  const OrbitCamera camera(orbit_, recording_.rectified, size);
+  const bool turned = orbit_.yaw_rad != drawn_orbit_.yaw_rad || orbit_.pitch_rad != drawn_orbit_.pitch_rad ||
+                      orbit_.zoom != drawn_orbit_.zoom || orbit_.middle_m != drawn_orbit_.middle_m;
+  if (cloud_stale_ || turned || points_.size() != size) {
+    if (points_.size() != size) points_ = Image<Rgb8>(size);
+    draw_points(shown_->frame.disparity.d_q4, shown_->frame.color, recording_.rectified, camera, points_);
+    DUO_TRY(textures_.set(cloud_, points_));
+    drawn_orbit_ = orbit_;
+    cloud_stale_ = false;
+  }
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const Fit fit = picture(tall, cloud_);
+  list.PushClipRect(fit.from, fit.to, true);
+  for (const ArmPose& arm : shown_->arms) {
+    std::optional<ImVec2> before;
+    for (const Keypoint& joint : arm.joints) {
+      const auto at = joint.state == JointState::kLost ? std::nullopt : camera.place(joint.p_in_rig_m);
+      const auto place = at ? std::optional(fit.place(at->x_px, at->y_px)) : std::nullopt;
+      if (before && place) list.AddLine(*before, *place, kBone, 3.5f * scale_);
+      before = place;
+    }
+    for (const Keypoint& joint : arm.joints)
+      if (const auto at = camera.place(joint.p_in_rig_m); at && joint.state != JointState::kLost)
+        list.AddCircleFilled(fit.place(at->x_px, at->y_px), 5 * scale_, color_of(joint.state));
+  }
+  list.PopClipRect();
+  return {};
+}
+
+void Panels::draw_region(const Cell& cell) {
+  if (!shown_) return;
+  picture(cell, region_);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  float x = cell.caption.x;
+  for (std::size_t j = 0; j < kArmJoints; ++j) {
+    const Rgb8 c = kJointShades[j];
+    const std::string name(kJointNames[j]);
+    list.AddRectFilled({x, cell.caption.y + 6 * scale_}, {x + 16 * scale_, cell.caption.y + 20 * scale_},
+                       IM_COL32(c.r, c.g, c.b, 255), 3 * scale_);
+    list.AddText({x + 22 * scale_, cell.caption.y + 5 * scale_}, kText, name.c_str());
+    x += std::min(40 * scale_ + ImGui::CalcTextSize(name.c_str()).x, cell.caption_width / 3);
+  }
+}
+
+void Panels::draw_hue_panel(const Cell& cell) {
+  if (!shown_) return;
+  picture(cell, hue_);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float bottom = cell.caption.y + 10 * scale_;
+  textures_.draw(list, hue_strip_, cell.caption, {cell.caption.x + cell.caption_width, bottom});
+  for (const int degrees : {0, 60, 120, 180, 240, 300}) {
+    const float x = cell.caption.x + static_cast<float>(degrees) * cell.caption_width / 360;
+    list.AddText({x, bottom + 3 * scale_}, kText, std::to_string(degrees).c_str());
+  }
+}
+
+}  // namespace duo::app::view

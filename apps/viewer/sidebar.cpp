@@ -1,0 +1,277 @@
+#include "sidebar.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "style.h"
+
+namespace duo::app::view {
+namespace {
+
+constexpr std::size_t kPlotted = 150;
+
+void title(const char* text) {
+  ImGui::Dummy({0, 2});
+  ImGui::PushFont(title_font());
+  ImGui::TextUnformatted(text);
+  ImGui::PopFont();
+}
+
+void colored(ImU32 color, const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
+/// A name and what it is.
+void fact(const char* name, const std::string& text) {
+  ImGui::TextDisabled("%s", name);
+  ImGui::SameLine(ImGui::GetFontSize() * 7.5f);
+  colored(kText, text);
+}
+
+ImU32 color_of_verdict(RigVerdict verdict) {
+  return verdict == RigVerdict::kGood ? kBox : verdict == RigVerdict::kCanBeImproved ? kWarn : kBad;
+}
+
+const char* word_of(JointState state) {
+  return state == JointState::kSeen ? "seen" : state == JointState::kInferred ? "inferred" : "lost";
+}
+
+}  // namespace
+
+Result<Sidebar> Sidebar::make(const PlayerOptions& options, const Player& player, std::string device, float scale) {
+  Sidebar out;
+  out.scale_ = scale;
+  out.device_ = std::move(device);
+  out.matcher_ = options.arm.engine.matcher;
+  out.source_ = fmt::format("{}{}{}", options.left, options.right.empty() ? "" : ", ", options.right);
+  DUO_TRY_ASSIGN(out.parameters_, matcher_parameters(options.arm.engine.matcher, options.arm.engine.preset));
+  const auto overrides = options.arm.engine.setup().parameters;
+  for (const ParameterInfo& info : out.parameters_) {
+    const auto given = std::find_if(overrides.begin(), overrides.end(), [&](const auto& o) { return o.first == info.name; });
+    out.values_.push_back(static_cast<int>(given != overrides.end() ? given->second : info.value));
+  }
+  out.doubts_ = rig_doubts(player.rig());
+  return out;
+}
+
+void Sidebar::add(const Shown& shown) {
+  if (shown.interval_ms <= 0) return;
+  speeds_.push_back({static_cast<float>(shown.times.engine_ms),
+                     shown.arms.empty() ? 0.0f : static_cast<float>(shown.times.tracker_ms),
+                     static_cast<float>(shown.latency_ms), static_cast<float>(shown.interval_ms)});
+  if (speeds_.size() > kPlotted) speeds_.pop_front();
+}
+
+bool Sidebar::draw(Player& player, Clicks& clicks, const Shown* shown, const std::string& note) {
+  const PlayerStatus status = player.status();
+  put_clicks(player, clicks, shown, status);
+  put_playback(player, shown, status);
+  put_joints(shown);
+  put_speed();
+  put_source(player, status);
+  put_parameters(player);
+  ImGui::Dummy({0, 4});
+  const bool wanted = ImGui::Button("Screenshot", {-1, 0});
+  if (!note.empty()) colored(kFaint, note);
+  return wanted;
+}
+
+void Sidebar::put_clicks(Player& player, Clicks& clicks, const Shown* shown, const PlayerStatus& status) {
+  const bool tracking = shown != nullptr && !shown->arms.empty();
+  ImGui::PushFont(title_font());
+  colored(clicks.wanted() ? kAccent
+          : tracking      ? kBox
+                          : kFaint,
+          clicks.wanted() ? clicks.prompt()
+          : tracking      ? "Tracking"
+                          : "No arm is selected");
+  ImGui::PopFont();
+  if (!status.problem.empty()) colored(kBad, status.problem);
+  for (std::size_t i = 0; i < kArmsNames.size(); ++i) {
+    if (i > 0) ImGui::SameLine();
+    if (ImGui::RadioButton(kArmsNames[i], clicks.arms() == static_cast<Arms>(i))) clicks.start(static_cast<Arms>(i));
+  }
+  ImGui::SameLine(0, 12 * scale_);
+  ImGui::TextDisabled(clicks.arms() == Arms::kBoth ? "arms" : "arm");
+  const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
+  if (ImGui::Button(clicks.wanted() ? "Undo click" : "Select again", {half, 0})) {
+    if (clicks.wanted())
+      clicks.undo();
+    else
+      clicks.start(clicks.arms());
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Reset", {half, 0})) {
+    player.forget_arms();
+    clicks.start(clicks.arms());
+  }
+}
+
+void Sidebar::put_playback(Player& player, const Shown* shown, const PlayerStatus& status) {
+  title(player.live() ? "Live" : "Playback");
+  const float third = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
+  const bool playing = status.state == PlayState::kPlaying, ended = status.state == PlayState::kEnded;
+  if (ImGui::Button(ended ? "Again" : playing ? "Pause" : "Play", {third, 0})) {
+    if (ended)
+      player.restart();
+    else
+      player.play(!playing);
+  }
+  if (player.live()) {
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled(
+        "%s", fmt::format("{} dropped, skew {:.1f} ms", status.dropped, shown != nullptr ? shown->skew_ms : 0).c_str());
+    if (status.silent) colored(kBad, "no pictures come: is a camera unplugged?");
+    if (!status.event.empty()) colored(kWarn, status.event);
+    return;
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Step", {third, 0}) && !ended) {
+    player.play(false);
+    player.step();
+  }
+  ImGui::SameLine();
+  if (bool loop = status.loop; ImGui::Checkbox("Loop", &loop)) player.loop(loop);
+  const std::int64_t frame = shown != nullptr ? shown->number + 1 : 0;
+  const float share = player.count() > 0 ? static_cast<float>(frame) / static_cast<float>(player.count()) : 0.0f;
+  ImGui::PushStyleColor(ImGuiCol_PlotHistogram, kAccent);
+  ImGui::ProgressBar(share, {-1, 4 * scale_}, "");
+  ImGui::PopStyleColor();
+  ImGui::TextDisabled("%s", fmt::format("frame {}{}{}", frame, player.count() > 0 ? fmt::format(" of {}", player.count()) : "",
+                                        ended     ? ", the end"
+                                        : playing ? ""
+                                                  : ", paused")
+                                .c_str());
+}
+
+void Sidebar::put_joints(const Shown* shown) const {
+  if (shown == nullptr || shown->arms.empty()) return;
+  title("Joints, metres");
+  if (!ImGui::BeginTable("joints", 6)) return;
+  const std::pair<const char*, float> columns[] = {{"", 1.35f}, {"", 1.3f}, {"x", 1}, {"y", 1}, {"z", 1}, {"\u00b1 cm", 0.9f}};
+  for (const auto& [name, share] : columns) ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, share);
+  ImGui::TableHeadersRow();
+  for (const ArmPose& arm : shown->arms)
+    for (std::size_t j = 0; j < kArmJoints; ++j) {
+      const Keypoint& k = arm.joints[j];
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(kJointNames[j].data());
+      ImGui::TableNextColumn();
+      ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(color_of(k.state)), "%s", word_of(k.state));
+      if (k.state == JointState::kLost) continue;
+      for (const double value : {k.p_in_rig_m.x, k.p_in_rig_m.y, k.p_in_rig_m.z}) {
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(fmt::format("{:.2f}", value).c_str());
+      }
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(fmt::format("{:.1f}", 100 * k.sigma_m).c_str());
+    }
+  ImGui::EndTable();
+}
+
+/// Engine and tracker as stacked bars, latency as a line, and the 33 ms of a camera's frame.
+void Sidebar::put_speed() const {
+  title("Speed");
+  if (speeds_.empty()) return ImGui::TextDisabled("nothing played yet");
+  std::vector<double> engine, tracker, latency, interval;
+  for (const Speed& s : speeds_) {
+    engine.push_back(s.engine_ms);
+    tracker.push_back(s.tracker_ms);
+    latency.push_back(s.latency_ms);
+    interval.push_back(s.interval_ms);
+  }
+  constexpr ImU32 kEngine = IM_COL32(64, 132, 214, 255), kTracker = IM_COL32(236, 151, 60, 255);
+  const float width = ImGui::GetContentRegionAvail().x, height = 64 * scale_;
+  const ImVec2 from = ImGui::GetCursorScreenPos(), to = {from.x + width, from.y + height};
+  ImGui::Dummy({width, height});
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(from, to, IM_COL32(18, 20, 25, 255), 4 * scale_);
+  const float most = std::clamp(1.15f * static_cast<float>(*std::max_element(latency.begin(), latency.end())), 50.0f, 500.0f);
+  const auto y_of = [&](float ms) { return to.y - height * std::min(ms / most, 1.0f); };
+  const float bar = width / static_cast<float>(kPlotted);
+  float x = to.x - bar * static_cast<float>(speeds_.size());
+  ImVec2 before;
+  for (const Speed& s : speeds_) {
+    list.AddRectFilled({x, y_of(s.engine_ms)}, {x + bar, to.y}, kEngine);
+    list.AddRectFilled({x, y_of(s.engine_ms + s.tracker_ms)}, {x + bar, y_of(s.engine_ms)}, kTracker);
+    const ImVec2 at = {x + bar / 2, y_of(s.latency_ms)};
+    if (&s != &speeds_.front()) list.AddLine(before, at, kText, 1.2f * scale_);
+    before = at;
+    x += bar;
+  }
+  constexpr float kCameraFrame_ms = 1000.0f / 30;
+  dashed_line(list, {from.x, y_of(kCameraFrame_ms)}, {to.x, y_of(kCameraFrame_ms)}, IM_COL32(255, 255, 255, 90), 1, 4 * scale_);
+  list.AddText({from.x + 5 * scale_, y_of(kCameraFrame_ms) - 17 * scale_}, kFaint, "33 ms");
+  const double ms = median(interval);
+  ImGui::TextUnformatted(fmt::format("{:.1f} frames/s, {:.0f} ms latency", ms > 0 ? 1000 / ms : 0, median(latency)).c_str());
+  colored(kEngine, fmt::format("engine {:.1f} ms", median(engine)));
+  ImGui::SameLine();
+  colored(kTracker, fmt::format("tracker {:.1f} ms", median(tracker)));
+}
+
+void Sidebar::put_parameters(Player& player) {
+  ImGui::Dummy({0, 2});
+  if (!ImGui::CollapsingHeader(("Matcher " + matcher_ + "###matcher").c_str())) return;
+  bool changed = false;
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {4 * scale_, 2 * scale_});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * scale_, 4 * scale_});
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const ParameterInfo& info = parameters_[i];
+    const std::string format = info.unit.empty() ? "%d" : "%d " + info.unit;
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", info.name.c_str());
+    bool hovered = ImGui::IsItemHovered();
+    ImGui::SameLine(128 * scale_);
+    ImGui::SetNextItemWidth(-1);
+    ImGui::SliderInt(("##" + info.name).c_str(), &values_[i], static_cast<int>(info.min), static_cast<int>(info.max),
+                     format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+    hovered = ImGui::IsItemHovered() || hovered;
+    changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+    if (hovered) ImGui::SetTooltip("%s", info.help.c_str());
+  }
+  ImGui::PopStyleVar(2);
+  if (ImGui::Button("Preset's values", {-1, 0})) {
+    for (std::size_t i = 0; i < parameters_.size(); ++i) values_[i] = static_cast<int>(parameters_[i].value);
+    changed = true;
+  }
+  if (!changed) return;
+  std::vector<std::pair<std::string, double>> overrides;
+  for (std::size_t i = 0; i < parameters_.size(); ++i)
+    if (values_[i] != static_cast<int>(parameters_[i].value)) overrides.emplace_back(parameters_[i].name, values_[i]);
+  player.set(overrides);
+}
+
+void Sidebar::put_source(Player& player, const PlayerStatus& status) const {
+  if (!ImGui::CollapsingHeader("Source and rig", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  const Recording& recording = player.recording();
+  const Rig& rig = player.rig();
+  colored(kText, source_);
+  fact("pictures", fmt::format("{}x{}, {:.0f} a second, {}", recording.size.width, recording.size.height, 1 / recording.frame_s,
+                               player.live() ? "live" : "from files"));
+  fact("focal lengths", fmt::format("{:.1f} and {:.1f} px", rig.left.fx_px, rig.right.fx_px));
+  fact("baseline", fmt::format("{:.1f} mm{}", 1000 * rig.baseline_m(), rig.metric ? "" : ", a guess"));
+  fact("engine", recording.engine);
+  fact("window", device_);
+  for (const RigDoubt& doubt : doubts_) colored(color_of_verdict(doubt.verdict), doubt.what);
+  if (status.checking_rig)
+    ImGui::TextDisabled("looking at the pictures ...");
+  else if (ImGui::Button("Does the rig fit this scene?", {-1, 0}))
+    player.check_rig();
+  if (!status.health) return;
+  if (!*status.health) return colored(kBad, status.health->error().what);
+  const SceneHealth& health = **status.health;
+  colored(color_of_verdict(health.verdict), fmt::format("By this scene: {}", name_of(health.verdict)));
+  fact("rows", fmt::format("{:.2f} px off; good below {}", health.row_px, kGoodRow_px));
+  fact("pan", fmt::format("{:.1f} \u00b1 {:.1f} px", health.pan_px, health.pan_sigma_px));
+  fact("points", fmt::format("{} in {:.0f} % of the picture", health.points, 100 * health.covered));
+}
+
+}  // namespace duo::app::view

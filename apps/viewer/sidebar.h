@@ -1,0 +1,44 @@
+// The column of controls beside the pictures.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "clicks.h"
+#include "duoptic/engine.h"
+#include "player.h"
+
+namespace duo::app::view {
+
+class Sidebar {
+ public:
+  /// Errors  the matcher's parameters are not known
+  static Result<Sidebar> make(const PlayerOptions& options, const Player& player, std::string device, float scale);
+
+  /// For the plot.
+  void add(const Shown& shown);
+  /// In ImGui's current window; true when a screenshot is wanted.
+  bool draw(Player& player, Clicks& clicks, const Shown* shown, const std::string& note);
+
+ private:
+  void put_clicks(Player& player, Clicks& clicks, const Shown* shown, const PlayerStatus& status);
+  void put_playback(Player& player, const Shown* shown, const PlayerStatus& status);
+  void put_joints(const Shown* shown) const;
+  void put_speed() const;
+  void put_parameters(Player& player);
+  void put_source(Player& player, const PlayerStatus& status) const;
+
+  std::string source_, device_, matcher_;
+  float scale_ = 1;
+  std::vector<ParameterInfo> parameters_;
+  std::vector<int> values_;
+  std::vector<RigDoubt> doubts_;
+  struct Speed {
+    float engine_ms, tracker_ms, latency_ms, interval_ms;
+  };
+  std::deque<Speed> speeds_;
+};
+
+}  // namespace duo::app::view

@@ -1,0 +1,214 @@
+// duoptic view: a window on a source: depth, points, and an arm in 3D from three clicks.
+#include <fmt/format.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <memory>
+
+#include "command.h"
+#include "interrupt.h"
+#include "panels.h"
+#include "player.h"
+#include "sidebar.h"
+#include "window.h"
+
+namespace duo::app::view {
+namespace {
+
+constexpr char kFooter[] =
+    "Click hand, elbow and shoulder in the left camera's picture, which stands still meanwhile; then the arm is tracked.\n"
+    "Keys: Space pause, Right one frame, Backspace undo a click, R restart, F12 screenshot, Q close.\n"
+    "With -o the tracked frames are written as track writes them, complete when the window closes.\n\n"
+    "Examples:\n"
+    "  duoptic view synthetic                                                        a rendered person, live\n"
+    "  duoptic view camera:0 camera:2 --rig rig.json\n"
+    "  duoptic view left.avi right.avi --rig rig.json --loop\n"
+    "  duoptic view left.avi right.avi --rig rig.json --matcher pyramid -o arm.jsonl\n"
+    "  duoptic view left.avi right.avi --rig rig.json --screenshot view.png --after 30    closes after that frame";
+
+constexpr Size kWindow = {1440, 860};
+
+struct Options {
+  PlayerOptions player;
+  std::string rig, screenshot;
+  std::int64_t after = 0;
+  bool paused = false;
+};
+
+std::filesystem::path free_name() {
+  std::error_code ignored;
+  for (int i = 1;; ++i)
+    if (const std::string name = fmt::format("duoptic_view_{:03}.png", i); !std::filesystem::exists(name, ignored)) return name;
+}
+
+class Viewer {
+ public:
+  Viewer(const Options& options, Window& window, Player& player, Sidebar sidebar)
+      : options_(options),
+        window_(window),
+        player_(player),
+        panels_(window.textures(), player.recording(), window.scale()),
+        sidebar_(std::move(sidebar)) {}
+
+  /// Until the window is closed.
+  Result<void> run() {
+    constexpr double kIdle_s = 0.1;
+    if (options_.paused)
+      player_.step();
+    else
+      player_.play(true);
+    while (!window_.closing() && !Interrupt::asked() && !done_) {
+      Window::wait(kIdle_s);
+      DUO_TRY_ASSIGN(const bool visible, window_.begin());
+      if (!visible) continue;
+      take_newest();
+      if (shown_) DUO_TRY(panels_.show(shown_));
+      DUO_TRY(draw());
+      DUO_TRY(window_.end());
+      DUO_TRY(keep_screenshot());
+      DUO_TRY(check_end());
+    }
+    return {};
+  }
+
+ private:
+  void take_newest() {
+    const auto newest = player_.newest();
+    if (!newest || newest == shown_) return;
+    shown_ = newest;
+    sidebar_.add(*shown_);
+    if (!options_.screenshot.empty() && shown_->number >= options_.after) window_.want_screenshot();
+  }
+
+  Result<void> draw() {
+    const ImGuiIO& io = ImGui::GetIO();
+    const float margin = 8 * window_.scale(), beside = 320 * window_.scale();
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize(io.DisplaySize);
+    ImGui::Begin("duoptic", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+    DUO_TRY_ASSIGN(
+        const auto click,
+        panels_.draw({margin, margin}, {io.DisplaySize.x - beside - 2 * margin, io.DisplaySize.y - margin}, clicks_));
+    if (click) take_click(*click);
+    ImGui::SetCursorScreenPos({io.DisplaySize.x - beside - margin, margin});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {10 * window_.scale(), 10 * window_.scale()});
+    ImGui::BeginChild("controls", {beside, io.DisplaySize.y - 2 * margin}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    if (sidebar_.draw(player_, clicks_, shown_.get(), note_)) window_.want_screenshot();
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
+    ImGui::End();
+    take_keys();
+    window_.set_title(!shown_                 ? "duoptic view"
+                      : clicks_.wanted()      ? "duoptic view: " + clicks_.prompt()
+                      : !shown_->arms.empty() ? "duoptic view: tracking"
+                                              : "duoptic view");
+    return {};
+  }
+
+  /// The picture stands still from the first click to the last, which are then of one frame.
+  void take_click(Clicks::Click click) {
+    if (clicks_.made().empty()) {
+      resume_ = player_.status().state == PlayState::kPlaying;
+      player_.play(false);
+    }
+    if (!clicks_.add(click)) return;
+    player_.select(clicks_.selections());
+    clicks_.stop();
+    if (resume_) player_.play(true);
+  }
+
+  void take_keys() {
+    for (const int key : window_.keys()) {
+      const PlayState state = player_.status().state;
+      if (key == GLFW_KEY_SPACE) player_.play(state != PlayState::kPlaying);
+      if (key == GLFW_KEY_RIGHT && state == PlayState::kPlaying) player_.play(false);
+      if (key == GLFW_KEY_RIGHT) player_.step();
+      if (key == GLFW_KEY_BACKSPACE && clicks_.wanted()) clicks_.undo();
+      if (key == GLFW_KEY_R) player_.restart();
+      if (key == GLFW_KEY_F12) window_.want_screenshot();
+      if (key == GLFW_KEY_Q) done_ = true;
+    }
+  }
+
+  Result<void> keep_screenshot() {
+    const auto picture = window_.screenshot();
+    if (!picture) return {};
+    const bool asked = !options_.screenshot.empty() && shown_ && shown_->number >= options_.after;
+    const std::filesystem::path path = asked ? std::filesystem::path(options_.screenshot) : free_name();
+    const auto written = write_png(*picture, path);
+    note_ = written ? "written: " + path.string() : written.error().what;
+    if (!asked) return {};
+    done_ = true;
+    return written;
+  }
+
+  /// A screenshot of a frame that never comes.
+  Result<void> check_end() const {
+    if (options_.screenshot.empty() || done_ || !shown_ || player_.status().state != PlayState::kEnded) return {};
+    const std::int64_t pairs = shown_->number + 1;
+    if (pairs > options_.after || player_.newest() != shown_) return {};
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("cannot take a screenshot of frame {}: {} ends after {} pairs, numbered from 0", options_.after,
+                             options_.player.left, pairs)};
+  }
+
+  const Options& options_;
+  Window& window_;
+  Player& player_;
+  Panels panels_;
+  Sidebar sidebar_;
+  Clicks clicks_;
+  std::shared_ptr<const Shown> shown_;
+  std::string note_;
+  bool resume_ = true, done_ = false;
+};
+
+Result<Exit> run(Options options, const CLI::App& app) {
+  if (!options.rig.empty()) {
+    DUO_TRY_ASSIGN(options.player.rig, load_rig(options.rig));
+  }
+  options.player.on_news = Window::wake;
+  std::unique_ptr<Window> window;  // outlives the player, which wakes it
+  DUO_TRY_ASSIGN(const auto player, Player::open(options.player));
+  DUO_TRY_ASSIGN(window, Window::open("duoptic view", kWindow));
+  set_style(window->scale());
+  DUO_TRY_ASSIGN(Sidebar sidebar, Sidebar::make(options.player, *player, window->device(), window->scale()));
+  const Interrupt interrupt;  // closes the window as its user would: lines are completed
+  const Result<void> shown = Viewer(options, *window, *player, std::move(sidebar)).run();
+  DUO_TRY_ASSIGN(const Exit exit, player->finish());
+  if (!player->warning().empty()) say(app, "warning: " + player->warning());
+  DUO_TRY(shown);
+  return exit;
+}
+
+}  // namespace
+
+Command add(CLI::App& app) {
+  CLI::App* sub = app.add_subcommand("view", "A window: depth, points, and an arm tracked from three clicks");
+  const auto options = std::make_shared<Options>();
+  sub->add_option("LEFT", options->player.left,
+                  "Picture or video of the left camera, the camera itself (camera:0, /dev/video0, http://, rtsp://, gst:),\nor "
+                  "synthetic; alone: both views side by side")
+      ->required();
+  sub->add_option("RIGHT", options->player.right, "The same of the right camera");
+  sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); left out: the source's own");
+  CLI::Option* loop = sub->add_flag("--loop", options->player.loop, "Start again at the end of a file");
+  sub->add_flag("--paused", options->paused, "Wait at the first frame");
+  sub->add_option("-o,--output", options->player.lines, "File for the JSON lines of tracked frames")->type_name("FILE");
+  CLI::Option* shot = sub->add_option("--screenshot", options->screenshot, "Write a PNG of the window, then close it")
+                          ->type_name("FILE")
+                          ->excludes(loop);
+  sub->add_option("--after", options->after, "The frame of the screenshot")
+      ->type_name("N")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
+      ->needs(shot)
+      ->capture_default_str();
+  options->player.arm.add_to(*sub);
+  sub->footer(kFooter);
+  return {sub, [options, sub] { return run(*options, *sub); }};
+}
+
+}  // namespace duo::app::view
