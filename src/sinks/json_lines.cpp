@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -16,6 +17,12 @@ constexpr int kVersion = 1;
 /// Quoted; bytes that are no UTF-8 (names of files may be anything) become U+FFFD.
 std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// From a live picture's capture to now.
+double since_ms(TimeNs t_ns) {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return static_cast<double>(std::chrono::nanoseconds(now).count() - t_ns) * 1e-6;
 }
 
 std::string header_line(const Recording& r) {
@@ -54,6 +61,7 @@ std::string frame_line(const TrackedFrame& frame, bool live) {
   if (frame.times)
     line += fmt::format(R"(,"engine_ms":{},"tracker_ms":{})", number(frame.times->engine_ms, 3),
                         number(frame.times->tracker_ms, 3));
+  if (frame.times && live) line += fmt::format(R"(,"latency_ms":{})", number(since_ms(frame.left.t_ns), 3));
   return line + "}\n";
 }
 
