@@ -35,28 +35,27 @@ void ArmOptions::add_to(CLI::App& app) {
       ->capture_default_str();
 }
 
-Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, const std::optional<Rig>& given,
-                            const ArmOptions& options, std::int64_t first) {
+Result<ArmRun> ArmRun::open(Input input, const ArmOptions& options, std::int64_t first) {
   ArmRun run;
-  DUO_TRY_ASSIGN(auto pairs, open_pairs(left, right, given ? CameraWish{.size = given->left.size} : CameraWish{}));
   DUO_TRY_ASSIGN(run.engine_, make_engine(options.engine.engine, options.engine.threads));
   Setup& setup = run.setup_;
   setup = options.engine.setup();
-  setup.size = pairs->size();
-  setup.rig = given ? given : pairs->rig();
+  setup.size = input.pairs->size();
+  setup.rig = input.rig;
   if (!setup.rig)
     return Error{ErrorCode::kBadInput,
-                 fmt::format("cannot find joints in space with {}: it does not bring a rig; give one with --rig", left)};
+                 fmt::format("cannot find joints in space with {}: it does not bring a rig; give one with "
+                             "--rig",
+                             input.names[0])};
   const Rig& rig = *setup.rig;
   setup.max_disparity = options.max_disparity > 0 ? options.max_disparity : disparity_at(kNearest_m, rig);
   setup.wants = {.color = true, .depth = false};
   DUO_TRY(run.engine_->prepare(setup));
   DUO_TRY_ASSIGN(run.tracker_, make_tracker("arm", options.tracker_preset));
-  const double frame_s = pairs->frame_s();
+  const double frame_s = input.pairs->frame_s();
   DUO_TRY(run.tracker_->prepare({rig, *run.engine_->rectified(), frame_s}));
 
-  run.recording_.sources = {left};
-  if (!right.empty()) run.recording_.sources.push_back(right);
+  run.recording_.sources = std::move(input.names);
   run.recording_.engine = run.engine_->name();
   run.recording_.matcher = options.engine.matcher;
   run.recording_.matcher_preset = options.engine.preset;
@@ -65,8 +64,8 @@ Result<ArmRun> ArmRun::open(const std::string& left, const std::string& right, c
   run.recording_.rectified = *run.engine_->rectified();
   run.recording_.size = setup.size;
   run.recording_.frame_s = frame_s;
-  run.recording_.live = pairs->live();
-  run.frames_ = std::make_unique<FrameAhead>(std::move(pairs), *run.engine_, first);
+  run.recording_.live = input.pairs->live();
+  run.frames_ = std::make_unique<FrameAhead>(std::move(input.pairs), *run.engine_, first);
   return run;
 }
 

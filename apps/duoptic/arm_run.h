@@ -12,6 +12,7 @@
 #include "duoptic/source.h"
 #include "duoptic/tracker.h"
 #include "frame_ahead.h"
+#include "input.h"
 
 namespace duo::app {
 
@@ -28,10 +29,9 @@ class ArmRun {
  public:
   static constexpr double kNearest_m = 0.5;
 
-  /// Without `rig`, the source's own. Pairs before number `first` are passed over.
-  /// Errors  those of open_pairs(), Engine::prepare() and Tracker::prepare(); no rig
-  static Result<ArmRun> open(const std::string& left, const std::string& right, const std::optional<Rig>& rig,
-                             const ArmOptions& options, std::int64_t first = 0);
+  /// Pairs before number `first` are passed over.
+  /// Errors  no rig; those of Engine::prepare() and Tracker::prepare()
+  static Result<ArmRun> open(Input input, const ArmOptions& options, std::int64_t first = 0);
 
   Result<Next> next() { return frames_->next(); }
   const Frame& frame() const { return *frames_->last().frame; }

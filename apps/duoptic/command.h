@@ -66,6 +66,12 @@ Command add(CLI::App& app);
 namespace cameras {
 Command add(CLI::App& app);
 }
+namespace record {
+Command add(CLI::App& app);
+}
+namespace play {
+Command add(CLI::App& app);
+}
 namespace version {
 Command add(CLI::App& app);
 }

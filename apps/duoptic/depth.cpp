@@ -7,8 +7,8 @@
 
 #include "command.h"
 #include "duoptic/calibrate.h"
-#include "duoptic/source.h"
 #include "frame_files.h"
+#include "input.h"
 #include "interrupt.h"
 #include "progress.h"
 #include "timing.h"
@@ -110,9 +110,10 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(setup.rig, load_rig(options.rig));
   }
-  DUO_TRY_ASSIGN(const auto pairs,
-                 open_pairs(options.left, options.right, setup.rig ? CameraWish{.size = setup.rig->left.size} : CameraWish{}));
-  setup.size = pairs->size();
+  DUO_TRY_ASSIGN(const Input input, open_input(options.left, options.right, setup.rig));
+  setup.rig = input.rig;
+  if (options.near_m > 0 && !setup.rig) throw CLI::RequiredError("--rig");
+  setup.size = input.pairs->size();
   setup.max_disparity = options.max_disparity;
   if (setup.rig) {
     if (options.near_m > 0) {
@@ -124,7 +125,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   setup.wants.confidence = options.confidence;
   DUO_TRY_ASSIGN(const auto engine, make_engine(options.engine.engine, options.engine.threads));
   DUO_TRY(engine->prepare(setup));
-  DUO_TRY_ASSIGN(const Summary summary, process(*pairs, *engine, options, app));
+  DUO_TRY_ASSIGN(const Summary summary, process(*input.pairs, *engine, options, app));
   print(summary, *engine, options, setup);
   if (!summary.warning.empty()) say(app, "warning: " + summary.warning);
   return summary.end == Next::kCut ? Exit::kCut : Exit::kOk;
@@ -135,10 +136,13 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("depth", "Disparity, depth and points of pictures or videos");
   const auto options = std::make_shared<Options>();
-  sub->add_option("LEFT", options->left, "Picture or video of the left camera, or of both side by side")->required();
+  sub->add_option("LEFT", options->left, "Picture or video of the left camera, a recording, or both views side by side")
+      ->required();
   sub->add_option("RIGHT", options->right, "Picture or video of the right camera");
-  CLI::Option* rig = sub->add_option(
-      "--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); without it the pair is taken as rectified");
+  sub->add_option(
+      "--rig", options->rig,
+      "Calibration (our JSON, OpenCV's YAML or JSON); without it, and in no recording that has one, the pair is taken "
+      "as rectified");
   CLI::Option* most = sub->add_option("--max-disparity", options->max_disparity, "Searches 0 .. N-1 px")
                           ->type_name("N")
                           ->check(CLI::Range(1, Engine::kMaxDisparity))
@@ -146,7 +150,6 @@ Command add(CLI::App& app) {
   sub->add_option("--near", options->near_m, "Searches as far as something at this distance needs, by the rig")
       ->type_name("METRES")
       ->check(CLI::PositiveNumber)
-      ->needs(rig)
       ->excludes(most);
   sub->add_option("-o,--output", options->folder, "Folder for the results")->type_name("DIR")->capture_default_str();
   sub->add_option("--every", options->every, "Of a video, only every N-th frame")

@@ -32,7 +32,9 @@ class FrameAhead {
   }
 
   std::int64_t count() const { return count_; }
-  /// As PairSource::next(), into last(); not to be called again after the end or an error.
+  bool live() const { return source_->live(); }
+  /// As PairSource::next(), into last(), and kNothing for each live pair that is not given; not to be called again after the
+  /// end or an error.
   Result<Next> next() { return frames_->next(last_); }
   /// Lives until next() gives another.
   const Matched& last() const { return last_; }
@@ -65,6 +67,7 @@ class FrameAhead {
       DUO_TRY_ASSIGN(const Next next, pairs_ ? pairs_->next(into.pair) : source_->next(into.pair));
       if (next != Next::kPicture) return next;
       if (read_ == 0) start_ns_ = into.pair.left.t_ns;
+      if (read_ < first_ && source_->live()) return ++read_, Next::kNothing;  // it may be long: who waits may want to stop
     } while (read_++ < first_);
     make_frame(into);
     return Next::kPicture;

@@ -55,9 +55,9 @@ int run(int argc, char** argv) {
   CLI::App app("Two cameras in, dense depth out.", "duoptic");
   app.require_subcommand(1);
   app.footer(kFooter);
-  const std::vector<Command> commands = {depth::add(app),  track::add(app),   eval::add(app),  bench::add(app),
-                                         demo::add(app),   synth::add(app),   board::add(app), calibrate::add(app),
-                                         rig::add(app),    cameras::add(app),
+  const std::vector<Command> commands = {depth::add(app),     track::add(app), eval::add(app),   bench::add(app),
+                                         demo::add(app),      synth::add(app), board::add(app),  rig::add(app),
+                                         calibrate::add(app), play::add(app),  record::add(app), cameras::add(app),
 #ifdef DUO_VIEWER
                                          view::add(app),
 #endif

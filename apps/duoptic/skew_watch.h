@@ -26,7 +26,7 @@ class SkewWatch {
 
  private:
   struct Seen {
-    double x_m = 0, t_s = 0;
+    double x_m = 0, t_s = 0, speed_m_s = 0;
     bool valid = false;
   };
   double baseline_m_;

@@ -26,12 +26,12 @@ std::optional<std::string> told(SkewWatch& watch, double t_s, double x_m, double
 TEST(Skew, AWarningWhereItMattersAndNotTooOften) {
   SkewWatch watch(0.125);
   EXPECT_FALSE(told(watch, 0, 0, 10));       // no speed yet
-  EXPECT_FALSE(told(watch, 0.1, 0.01, 10));  // 0.1 m/s x 10 ms: 16 mm
+  EXPECT_FALSE(told(watch, 0.1, 0.01, 10));  // 0.07 m/s, two thirds of the step's 0.1, x 10 ms: 11 mm
   const auto warning = told(watch, 0.2, 0.11, 10);
-  ASSERT_TRUE(warning);  // 1 m/s: 160 mm
+  ASSERT_TRUE(warning);  // 0.07 + 2/3 (1 - 0.07) m/s: 110 mm
   EXPECT_NE(warning->find("10.0 ms after"), std::string::npos) << *warning;
-  EXPECT_NE(warning->find("hand moves sideways at 1.0 m/s"), std::string::npos) << *warning;
-  EXPECT_NE(warning->find("160 mm"), std::string::npos) << *warning;
+  EXPECT_NE(warning->find("hand moves sideways at 0.7 m/s"), std::string::npos) << *warning;
+  EXPECT_NE(warning->find("110 mm"), std::string::npos) << *warning;
   EXPECT_FALSE(told(watch, 0.3, 0.21, 10));  // said already
   EXPECT_FALSE(told(watch, 10.3, 1.21, 1));  // 0.1 m/s
   EXPECT_TRUE(told(watch, 10.4, 1.31, -10));

@@ -10,6 +10,7 @@
 #include "arm_run.h"
 #include "interrupt.h"
 #include "progress.h"
+#include "sink_options.h"
 #include "skew_watch.h"
 #include "timing.h"
 
@@ -28,14 +29,18 @@ constexpr char kFooter[] =
     "  duoptic track left.avi right.avi --rig rig.json --at-frame 40 --select hand=.. --select elbow=.. --select shoulder=.. "
     "\\\n"
     "      --select2 hand=.. --select2 elbow=.. --select2 shoulder=.. -o arms.jsonl --video arms.mp4\n"
+    "  duoptic track clip.mkv --select hand=.. --select elbow=.. --select shoulder=.. --realtime --vmc 127.0.0.1:39539 \\\n"
+    "      --bvh arm.bvh --csv arm.csv -o arm.jsonl                       a recording, with its own rig, to an avatar and to "
+    "files\n"
     "  duoptic track camera:0 camera:2 --rig rig.json --at-frame 60 --select ...   (duoptic cameras tells the names)";
 
 struct Options {
-  std::string left, right, rig, output, video;
+  std::string left, right, rig;
   std::vector<std::string> select, select2;
   std::int64_t at_frame = 0;
-  bool stats = false, quiet = false;
+  bool stats = false, quiet = false, realtime = false;
   ArmOptions arm;
+  SinkOptions sinks;
 };
 
 using Click = ArmSelection::Click;
@@ -117,38 +122,24 @@ Result<void> first_frame(ArmRun& run, Events& events, std::int64_t number, const
                                                  read, read == 1 ? "" : "s")};
 }
 
-using Sinks = std::vector<std::unique_ptr<Sink>>;
-
-Result<Sinks> make_sinks(const Options& options, const Recording& recording, const CLI::App& app) {
-  Sinks sinks;
-  if (!options.video.empty()) {
-    std::string note;
-    DUO_TRY_ASSIGN(auto video, make_panel_video(options.video, recording, note));
-    if (!note.empty()) say(app, "warning: " + note);
-    sinks.push_back(std::move(video));
-  }
-  DUO_TRY_ASSIGN(auto lines, make_json_lines(options.output, recording));
-  sinks.push_back(std::move(lines));
-  return sinks;
-}
-
 struct Summary {
   std::vector<double> engine_ms, tracker_ms;
   Next end = Next::kEnd;
+  std::string dropped;  // by each sink that did
 };
 
 /// Tracks from the first frame to the end of the files, or to Ctrl-C.
 Result<Summary> track_all(ArmRun& run, Events& events, const std::vector<ArmSelection>& arms, const Options& options,
                           const CLI::App& app) {
   DUO_TRY(run.select(arms));
-  DUO_TRY_ASSIGN(const Sinks sinks, make_sinks(options, run.recording(), app));
+  DUO_TRY_ASSIGN(const auto sinks, options.sinks.make(run.recording(), run.frames().live(), app));
   Summary summary;
   Progress progress(app, run.frames().count(), options.quiet);
   SkewWatch skew(run.recording().rectified.baseline_m);
   while (true) {
     TrackedFrame frame = run.tracked(run.track());
     if (options.stats) frame.times = run.times();
-    for (const auto& sink : sinks) DUO_TRY(sink->write(frame));
+    for (const auto& [name, sink] : sinks) DUO_TRY(sink->write(frame));
     summary.engine_ms.push_back(run.times().engine_ms);
     summary.tracker_ms.push_back(run.times().tracker_ms);
     progress.frame(frame.number + 1);
@@ -156,7 +147,8 @@ Result<Summary> track_all(ArmRun& run, Events& events, const std::vector<ArmSele
     DUO_TRY_ASSIGN(summary.end, next_frame(run, events));
     if (summary.end != Next::kPicture) break;
   }
-  for (const auto& sink : sinks) DUO_TRY(sink->finish());
+  for (const auto& [name, sink] : sinks) DUO_TRY(sink->finish());
+  summary.dropped = dropped_text(sinks);
   return summary;
 }
 
@@ -164,17 +156,23 @@ std::string text_of(const Summary& summary, double seconds, const ArmRun& run, c
   const std::size_t frames = summary.engine_ms.size();
   const std::string dropped = run.recording().live ? fmt::format(", {} dropped", run.frames().dropped()) : std::string();
   return fmt::format(
-      "{} frame{} of {}x{} in {:.1f} s = {:.1f} frames/s{}; engine {:.1f} ms, tracker {:.1f} ms ({}, {}, {} thread{})", frames,
-      frames == 1 ? "" : "s", run.recording().size.width, run.recording().size.height, seconds,
+      "{} frame{} of {}x{} in {:.1f} s = {:.1f} frames/s{}; engine {:.1f} ms, tracker {:.1f} ms ({}, {}, {} thread{}){}",
+      frames, frames == 1 ? "" : "s", run.recording().size.width, run.recording().size.height, seconds,
       static_cast<double>(frames) / seconds, dropped, median(summary.engine_ms), median(summary.tracker_ms),
       run.recording().engine, run.recording().tracker_preset, options.arm.engine.threads,
-      options.arm.engine.threads == 1 ? "" : "s");
+      options.arm.engine.threads == 1 ? "" : "s", summary.dropped);
 }
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
   const std::vector<ArmSelection> arms = selections(options);
-  DUO_TRY_ASSIGN(const Rig rig, load_rig(options.rig));
-  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(options.left, options.right, rig, options.arm, options.at_frame));
+  std::optional<Rig> rig;
+  if (!options.rig.empty()) {
+    DUO_TRY_ASSIGN(rig, load_rig(options.rig));
+  }
+  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, rig));
+  if (!input.rig) throw CLI::RequiredError("--rig");  // most sources do not bring their own
+  if (options.realtime && !input.pairs->live()) input.pairs = in_real_time(std::move(input.pairs));
+  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(input), options.arm, options.at_frame));
   std::optional<Interrupt> interrupt;
   if (run.recording().live) interrupt.emplace();
   Events events(app);
@@ -185,7 +183,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   // stdout belongs to the lines when they go there.
   if (options.stats)
     say(app, text_of(*summary, times.wall_ms / 1000, run, options));
-  else if (!options.quiet && !options.output.empty())
+  else if (!options.quiet && !options.sinks.lines.empty())
     fmt::print("{}\n", text_of(*summary, times.wall_ms / 1000, run, options));
   if (const std::string warning = run.frames().warning(); !run.recording().live && !warning.empty())
     say(app, "warning: " + warning);
@@ -199,11 +197,11 @@ Command add(CLI::App& app) {
       app.add_subcommand("track", "An arm in 3D through two videos or live, from a click on hand, elbow and shoulder");
   const auto options = std::make_shared<Options>();
   sub->add_option("LEFT", options->left,
-                  "Video of the left camera, or the camera itself (camera:0, /dev/video0, http://, rtsp://, gst:);\nalone: "
-                  "both views side by side")
+                  "Video of the left camera, or the camera itself (camera:0, /dev/video0, http://, rtsp://, gst:);\nalone: a "
+                  "recording, both views side by side, or the synthetic person")
       ->required();
   sub->add_option("RIGHT", options->right, "The same of the right camera");
-  sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON)")->required();
+  sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); a recording may bring its own");
   sub->add_option("--select", options->select, "Where hand, elbow and shoulder are; once for each")
       ->type_name("JOINT=X,Y")
       ->required();
@@ -213,8 +211,9 @@ Command add(CLI::App& app) {
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
       ->capture_default_str();
-  sub->add_option("-o,--output", options->output, "File for the JSON lines instead of stdout")->type_name("FILE");
-  sub->add_option("--video", options->video, "MP4 with the four panels: joints, depth, arm region, hue")->type_name("FILE");
+  options->sinks.add_to(*sub);
+  sub->add_flag("--realtime", options->realtime,
+                "Take files at the pace of their capture times, as if live: late pairs are dropped");
   options->arm.add_to(*sub);
   sub->add_flag("--stats", options->stats, "Add times to each line and print a summary of them on stderr");
   sub->add_flag("--quiet", options->quiet, "No progress and no summary");

@@ -31,13 +31,18 @@ class OnePair final : public PairSource {
 
 Picture copy_of(const Picture& picture) { return {picture.pixels.clone(), picture.t_ns, picture.sequence}; }
 
+Result<ArmRun> open_run(const PlayerOptions& options) {
+  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, options.rig));
+  return ArmRun::open(std::move(input), options.arm);
+}
+
 double now_ms() { return clock_ms(CLOCK_MONOTONIC); }
 
 }  // namespace
 
 Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options) {
   std::unique_ptr<Player> player(new Player(options));
-  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(options.left, options.right, options.rig, options.arm));
+  DUO_TRY_ASSIGN(ArmRun run, open_run(options));
   player->recording_ = run.recording();
   player->rig_ = run.rig();
   player->skew_ = SkewWatch(run.recording().rectified.baseline_m);
@@ -276,7 +281,7 @@ void Player::at_end(Next end) {
 bool Player::reopen() {
   const std::int64_t frames = run_ && has_frame_ ? static_cast<std::int64_t>(run_->frames().last().pair.sequence) + 1 : 0;
   run_.reset();  // before another: a file may be a device
-  auto run = ArmRun::open(options_.left, options_.right, options_.rig, options_.arm);
+  auto run = open_run(options_);
   if (!run) {
     fail(run.error(), true);
     return false;

@@ -59,7 +59,7 @@ struct PlayerStatus {
 /// Threads  any; what is asked for happens between two frames
 class Player {
  public:
-  /// Errors  those of ArmRun::open() and make_json_lines()
+  /// Errors  those of open_input(), ArmRun::open() and make_json_lines()
   static Result<std::unique_ptr<Player>> open(const PlayerOptions& options);
   ~Player();
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "duoptic/image.h"
 #include "duoptic/rig.h"
@@ -17,6 +18,7 @@ struct Picture {
   Image<Rgb8> pixels;
   TimeNs t_ns = 0;
   std::uint64_t sequence = 0;
+  std::vector<std::uint8_t> jpeg = {};  // the same as its camera or file delivered it; empty where that was no JPEG
 };
 
 /// Both cameras at one instant; the pictures have the same size.

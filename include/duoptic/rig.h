@@ -86,5 +86,7 @@ Result<void> check_rig(const Rig& rig, const std::string& name);
 /// Writes our JSON (schema "duoptic.rig", version 1). What came after the first release of version 1 (errors, uncertainty,
 /// metric, time_offset_s, names, date) may be missing in a file.
 Result<void> save_rig(const Rig& rig, const std::filesystem::path& path);
+/// The text that save_rig() writes.
+std::string json_from_rig(const Rig& rig);
 
 }  // namespace duo

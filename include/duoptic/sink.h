@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "duoptic/axes.h"
 #include "duoptic/frame.h"
 #include "duoptic/result.h"
 #include "duoptic/rig.h"
@@ -69,6 +70,9 @@ Result<void> write_ply(View<const std::uint16_t> d_q4, View<const Rgb8> color, c
 /// The cloud drawn from a camera moved sideways and up, so that a person sees its shape without a 3D program.
 Image<Rgb8> draw_cloud(View<const std::uint16_t> d_q4, View<const Rgb8> color, const Rectified& rectified, Size size);
 
+/// Which arm of the person, as the person says it.
+enum class Side : std::uint8_t { kRight, kLeft };
+
 /// What is known of a recording before its first frame.
 struct Recording {
   std::vector<std::string> sources;  // as the user named them, left first
@@ -76,7 +80,8 @@ struct Recording {
   Rectified rectified;
   Size size;  // of the raw left picture
   double frame_s = 1.0 / 30;
-  bool live = false;  // from cameras: what differs from run to run is told, too
+  bool live = false;              // from cameras: what differs from run to run is told, too
+  Side first_arm = Side::kRight;  // of TrackedFrame::arms; a second arm is the other one
 };
 
 struct TrackTimes {
@@ -98,6 +103,12 @@ class Sink {
  public:
   virtual ~Sink() = default;
   virtual Result<void> write(const TrackedFrame& frame) = 0;
+  /// Whether write() looks at TrackedFrame::left and ::frame.
+  virtual bool wants_pictures() const { return false; }
+  /// Whether write() always returns at once, whatever happens to what it sends.
+  virtual bool instant() const { return false; }
+  /// Frames that were not written or sent because the last one took too long.
+  virtual std::int64_t dropped() const { return 0; }
   /// Ends the file and gives it its name; without it nothing is left.
   virtual Result<void> finish() = 0;
 };
@@ -113,6 +124,31 @@ Result<std::unique_ptr<Sink>> make_json_lines(const std::filesystem::path& path,
 /// Errors  those of every written file; no encoder at all
 Result<std::unique_ptr<Sink>> make_panel_video(const std::filesystem::path& path, const Recording& recording,
                                                std::string& note);
+
+/// A row a frame and arm, see docs/formats.md.
+///
+/// Errors  those of every written file
+Result<std::unique_ptr<Sink>> make_csv(const std::filesystem::path& path, Axes axes);
+
+/// Motion for animation programs: a hierarchy an arm (shoulder, elbow, hand, with the median length of its bones) and a line of
+/// channels each frame_s from the first frame on. Metres, y up, see docs/formats.md. Kept in memory until finish(), 80 bytes an
+/// arm and frame.
+///
+/// Errors  those of every written file
+Result<std::unique_ptr<Sink>> make_bvh(const std::filesystem::path& path, const Recording& recording);
+
+/// Sends a bundle of OSC messages a frame by UDP to `target`, "host:port"; nothing listens and nothing waits: what the network
+/// does not take at once is dropped. See docs/formats.md for the addresses.
+///
+/// Errors  not host:port, no such host
+Result<std::unique_ptr<Sink>> make_osc(const std::string& target, Axes axes);
+
+/// The same with the Virtual Motion Capture protocol: bones of a humanoid avatar as rotations from its T-pose.
+Result<std::unique_ptr<Sink>> make_vmc(const std::string& target, const Recording& recording);
+
+/// `sink` behind a thread and a place for one frame, for live sources: write() copies what the sink wants and returns; a frame
+/// that comes before the last one was taken replaces it, and dropped() counts. Errors of `sink` come with the next call.
+std::unique_ptr<Sink> in_background(std::unique_ptr<Sink> sink);
 
 /// The thesis's four panels: the raw left picture with joints as green boxes and bones as red lines, both broken where a joint
 /// is inferred; depth in colours over `range`, with a legend in metres; the arm's pixels in three shades, one a joint; hue as

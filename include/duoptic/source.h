@@ -77,12 +77,18 @@ class PairSource {
 };
 
 /// Opens LEFT and RIGHT (two pictures, two videos or two live sources of the same size); an empty `right` means that `left`
-/// holds both views side by side. Two cameras share exposure, gain and white balance: the left one's, after a second.
-/// "synthetic", "synthetic:SCRIPT" or "synthetic:SCRIPT:WIDTHxHEIGHT" alone is the person of `duoptic synth`, live.
+/// holds both views: as two video tracks, which is a recording and may bring its rig, or side by side. A recording that was
+/// killed or cut gives its whole pairs and then Next::kCut. Two cameras share exposure, gain and white balance: the left one's,
+/// after a second. "synthetic", "synthetic:SCRIPT" or "synthetic:SCRIPT:WIDTHxHEIGHT" alone is the person of `duoptic synth`,
+/// live.
 ///
-/// Errors  those of open_source(); sizes differ; a picture and a video, a file and a live source, one camera twice; odd width
-///         side by side
+/// Errors  those of open_source(); a recording's rig that cannot be one; sizes differ; a picture and a video, a file and a live
+///         source, one camera twice; odd width side by side
 Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right,
                                                const CameraWish& wish = {});
+
+/// The pairs of files at the pace of their capture times, as if they came live: one that is late is dropped when the next is
+/// due, too.
+std::unique_ptr<PairSource> in_real_time(std::unique_ptr<PairSource> pairs);
 
 }  // namespace duo

@@ -33,7 +33,6 @@ Result<std::string_view> rig_text(std::string_view text, const std::string& name
 
 /// Our own JSON, schema "duoptic.rig".
 Result<Rig> rig_from_json(const nlohmann::json& json, const std::string& name);
-std::string json_from_rig(const Rig& rig);
 
 /// What OpenCV's FileStorage writes as JSON or as YAML.
 Result<Rig> rig_from_opencv_json(const nlohmann::json& json, const std::string& name);

@@ -54,12 +54,12 @@ const char* advice(int error) {
   }
 }
 
+}  // namespace
+
 Error write_error(const std::filesystem::path& path, int error) {
   return {ErrorCode::kWriteFailed,
           fmt::format("cannot write '{}': {}; {}", path.string(), std::strerror(error), advice(error))};
 }
-
-}  // namespace
 
 Result<std::string> read_file(const std::filesystem::path& path, std::size_t limit, std::string_view what) {
   const auto error = [&](ErrorCode code, std::string_view why) {

@@ -21,6 +21,9 @@ Result<std::string> read_file(const std::filesystem::path& path, std::size_t lim
 /// Errors  no such folder, no permission, disk full, the name belongs to something that is not a file
 Result<void> write_file(const std::filesystem::path& path, std::string_view bytes);
 
+/// "cannot write 'path': why; what to do" for an errno.
+Error write_error(const std::filesystem::path& path, int error);
+
 /// A file written piece by piece: a hidden one beside `path` until publish(), gone with this object before that.
 class PartialFile {
  public:

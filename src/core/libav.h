@@ -18,6 +18,13 @@ struct Free {
   void operator()(AVPacket* p) const { av_packet_free(&p); }
   void operator()(SwsContext* p) const { sws_freeContext(p); }
 };
+struct CloseOutput {
+  void operator()(AVFormatContext* p) const {
+    avio_closep(&p->pb);
+    avformat_free_context(p);
+  }
+};
+using Muxer = std::unique_ptr<AVFormatContext, CloseOutput>;
 using Coder = std::unique_ptr<AVCodecContext, Free>;  // a decoder or an encoder
 using CodedFrame = std::unique_ptr<AVFrame, Free>;    // what comes out of one or goes into the other
 using Packet = std::unique_ptr<AVPacket, Free>;

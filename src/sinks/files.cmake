@@ -1,20 +1,37 @@
 # Explicit names, no glob: what is not listed is not built.
 set(dir ${PROJECT_SOURCE_DIR}/src/sinks)
+# OSC messages, for other programs.
+pkg_check_modules(LIBLO REQUIRED IMPORTED_TARGET liblo)
+target_link_libraries(duoptic PRIVATE PkgConfig::LIBLO)
 target_sources(duoptic PRIVATE
+  ${dir}/arm_bones.cpp
+  ${dir}/axes.cpp
+  ${dir}/bvh.cpp
   ${dir}/clip/avi.cpp
+  ${dir}/coded_view.cpp
+  ${dir}/csv.cpp
   ${dir}/draw_arm_region.cpp
   ${dir}/draw_cloud.cpp
   ${dir}/draw_disparity.cpp
   ${dir}/draw_hue.cpp
   ${dir}/draw_panels.cpp
+  ${dir}/in_background.cpp
   ${dir}/json_lines.cpp
+  ${dir}/osc.cpp
+  ${dir}/osc_target.cpp
   ${dir}/panel_video.cpp
   ${dir}/pfm.cpp
   ${dir}/ply.cpp
   ${dir}/png.cpp
-  ${dir}/video_writer.cpp)
+  ${dir}/recorder.cpp
+  ${dir}/video_writer.cpp
+  ${dir}/vmc.cpp)
 duoptic_test(sinks/files ${dir}/files_test.cpp)
 duoptic_test(sinks/recording ${dir}/recording_test.cpp)
+duoptic_test(sinks/other_programs ${dir}/motion_files_test.cpp)
+duoptic_test(sinks/recorder ${dir}/recorder_test.cpp)
 if(DUO_TESTS)
+  target_sources(sinks_other_programs_test PRIVATE ${dir}/osc_test.cpp)
+  target_link_libraries(sinks_other_programs_test PRIVATE PkgConfig::LIBLO)
   target_link_libraries(sinks_files_test PRIVATE opencv::core opencv::imgcodecs)
 endif()

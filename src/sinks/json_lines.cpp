@@ -1,29 +1,28 @@
 #include <fmt/format.h>
 
-#include <cmath>
+#include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/file.h"
 #include "duoptic/sink.h"
+#include "sinks/joint_text.h"
 
 namespace duo {
 namespace {
 
 constexpr int kVersion = 1;
-constexpr const char* kStates[] = {"seen", "inferred", "lost"};
-
-/// A number with `digits` decimals, so that every run prints the same; never "-0.00".
-std::string number(double value, int digits) {
-  if (!std::isfinite(value)) return "null";  // JSON knows no other way
-  const std::string text = fmt::format("{:.{}f}", value, digits);
-  return text[0] == '-' && text.find_first_not_of("-0.") == std::string::npos ? text.substr(1) : text;
-}
 
 /// Quoted; bytes that are no UTF-8 (names of files may be anything) become U+FFFD.
 std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// From a live picture's capture to now.
+double since_ms(TimeNs t_ns) {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return static_cast<double>(std::chrono::nanoseconds(now).count() - t_ns) * 1e-6;
 }
 
 std::string header_line(const Recording& r) {
@@ -47,7 +46,7 @@ std::string joint_text(const Keypoint& k) {
             : "null";
   const std::string uv = known ? fmt::format("[{},{}]", number(k.u_px, 2), number(k.v_px, 2)) : "null";
   return fmt::format(R"({{"p_in_rig_m":{},"uv_left_px":{},"state":"{}","confidence":{},"sigma_m":{}}})", p, uv,
-                     kStates[static_cast<int>(k.state)], number(k.confidence, 3), number(k.sigma_m, 4));
+                     state_text(k.state), number(k.confidence, 3), number(k.sigma_m, 4));
 }
 
 std::string frame_line(const TrackedFrame& frame, bool live) {
@@ -62,6 +61,7 @@ std::string frame_line(const TrackedFrame& frame, bool live) {
   if (frame.times)
     line += fmt::format(R"(,"engine_ms":{},"tracker_ms":{})", number(frame.times->engine_ms, 3),
                         number(frame.times->tracker_ms, 3));
+  if (frame.times && live) line += fmt::format(R"(,"latency_ms":{})", number(since_ms(frame.left.t_ns), 3));
   return line + "}\n";
 }
 

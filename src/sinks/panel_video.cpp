@@ -24,6 +24,7 @@ class PanelVideo final : public Sink {
     }
     return video_.write(draw_panels(frame, recording_, range_));
   }
+  bool wants_pictures() const override { return true; }
   Result<void> finish() override { return video_.finish(); }
 
  private:

@@ -38,11 +38,6 @@ av::Coder open_encoder(AVCodecID id, Size size, AVRational rate) {
 
 }  // namespace
 
-void VideoWriter::FreeMuxer::operator()(AVFormatContext* p) const {
-  avio_closep(&p->pb);
-  avformat_free_context(p);
-}
-
 Error VideoWriter::failed(int error) const {
   return {ErrorCode::kWriteFailed,
           fmt::format("cannot write video '{}': {}; free some space or write elsewhere", name_, av::reason(error))};

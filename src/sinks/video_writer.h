@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <string>
 
 #include "core/file.h"
@@ -24,10 +23,6 @@ class VideoWriter {
   bool is_h264() const { return encoder_->codec_id == AV_CODEC_ID_H264; }
 
  private:
-  struct FreeMuxer {
-    void operator()(AVFormatContext* p) const;
-  };
-
   VideoWriter(PartialFile file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
   Result<void> prepare(Size size, double frame_s);
   Result<void> encode(const AVFrame* frame);
@@ -35,7 +30,7 @@ class VideoWriter {
 
   PartialFile file_;
   std::string name_;
-  std::unique_ptr<AVFormatContext, FreeMuxer> muxer_;
+  av::Muxer muxer_;
   av::Coder encoder_;
   av::Scaler scaler_;
   av::CodedFrame frame_;

@@ -4,9 +4,11 @@ pkg_check_modules(LIBAV REQUIRED IMPORTED_TARGET libavformat libavcodec libswsca
 target_link_libraries(duoptic PRIVATE PkgConfig::LIBAV)
 target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/files.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/in_real_time.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/libav.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/pairs.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/pictures.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/recording.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/stream.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/video.cpp)
 target_link_libraries(duoptic PRIVATE opencv::videoio)

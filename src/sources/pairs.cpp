@@ -1,4 +1,4 @@
-// open_pairs(): two sources, or one with both views side by side, as one stream of pairs.
+// open_pairs(): two sources, or one with both views as two tracks or side by side, as one stream of pairs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +9,9 @@
 #include "sources/camera/camera.h"
 #include "sources/camera/modes.h"
 #include "sources/live/live_pairs.h"
+#include "sources/recording.h"
 #include "sources/synthetic/live_clip.h"
+#include "sources/video.h"
 
 namespace duo {
 namespace {
@@ -22,8 +24,14 @@ class TwoFiles final : public PairSource {
  public:
   TwoFiles(std::unique_ptr<Source> left, std::unique_ptr<Source> right, std::string left_name, std::string right_name)
       : left_(std::move(left)), right_(std::move(right)), names_{std::move(left_name), std::move(right_name)} {}
+  /// Both tracks of a recording.
+  TwoFiles(std::unique_ptr<Source> left, std::unique_ptr<Source> right, const std::string& name, RecordingHead head)
+      : TwoFiles(std::move(left), std::move(right), name, name) {
+    head_ = std::move(head);
+  }
   Size size() const override { return left_->size(); }
-  std::int64_t count() const override { return std::min(left_->count(), right_->count()); }
+  std::int64_t count() const override { return head_ ? head_->pairs : std::min(left_->count(), right_->count()); }
+  std::optional<Rig> rig() const override { return head_ ? head_->rig : std::nullopt; }
   bool still() const override { return left_->still(); }
   double frame_s() const override { return left_->frame_s(); }
   std::string warning() const override { return warning_; }
@@ -48,6 +56,7 @@ class TwoFiles final : public PairSource {
  private:
   std::unique_ptr<Source> left_, right_;
   std::string names_[2];
+  std::optional<RecordingHead> head_;
   std::string warning_;
   std::uint64_t given_ = 0;
 };
@@ -77,6 +86,7 @@ class SideBySide final : public PairSource {
   void take_half(int x, Picture& into) const {
     if (into.pixels.size() != size()) into.pixels = Image<Rgb8>(size());
     for (int y = 0; y < size().height; ++y) std::copy_n(picture_.pixels.row(y) + x, size().width, into.pixels.row(y));
+    into.jpeg.clear();
     into.t_ns = picture_.t_ns;
     into.sequence = picture_.sequence;
   }
@@ -90,6 +100,14 @@ class SideBySide final : public PairSource {
 
 std::string size_text(Size size) { return fmt::format("{}x{}", size.width, size.height); }
 
+Result<void> check_sizes(const Source& left, const Source& right, const std::filesystem::path& left_name,
+                         const std::filesystem::path& right_name) {
+  if (left.size() == right.size()) return {};
+  return Error{ErrorCode::kBadInput,
+               fmt::format("cannot pair {} with {}: sizes differ, {} and {}; both views need the same size", left_name.string(),
+                           right_name.string(), size_text(left.size()), size_text(right.size()))};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right,
@@ -102,6 +120,14 @@ Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left
   DUO_TRY_ASSIGN(auto left_source, open_source(left, wish));
   const Size size = left_source->size();
   if (right.empty()) {
+    DUO_TRY_ASSIGN(std::optional<RecordingHead> recording, read_recording_head(left));
+    if (recording) {
+      DUO_TRY_ASSIGN(left_source, open_video(left, 0));
+      DUO_TRY_ASSIGN(auto right_source, open_video(left, 1));
+      DUO_TRY(check_sizes(*left_source, *right_source, left, left));
+      return std::unique_ptr<PairSource>(
+          std::make_unique<TwoFiles>(std::move(left_source), std::move(right_source), left.string(), std::move(*recording)));
+    }
     if (size.width % 2 != 0)
       return Error{ErrorCode::kBadInput,
                    fmt::format("cannot split {}: both views side by side need an even width, it is {}; give LEFT "
@@ -116,10 +142,7 @@ Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left
   if (left_source->still() != right_source->still())
     return Error{ErrorCode::kBadInput,
                  fmt::format("cannot pair {} with {}: one is a picture, the other a video", left.string(), right.string())};
-  if (right_source->size() != size)
-    return Error{ErrorCode::kBadInput,
-                 fmt::format("cannot pair {} with {}: sizes differ, {} and {}; both views need the same size", left.string(),
-                             right.string(), size_text(size), size_text(right_source->size()))};
+  DUO_TRY(check_sizes(*left_source, *right_source, left, right));
   if (left_source->live()) return make_live_pairs(std::move(left_source), std::move(right_source));
   return std::unique_ptr<PairSource>(
       std::make_unique<TwoFiles>(std::move(left_source), std::move(right_source), left.string(), right.string()));

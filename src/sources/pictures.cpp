@@ -77,6 +77,7 @@ class PictureFile final : public Source {
     if (given_) return Next::kEnd;
     given_ = true;
     into.pixels = pixels_.clone();
+    into.jpeg.clear();
     into.t_ns = 0;
     into.sequence = 0;
     return Next::kPicture;

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 
+#include "core/capture_mark.h"
 #include "sources/libav.h"
 
 namespace duo {
@@ -26,7 +28,7 @@ TimeNs to_ns(std::int64_t t, AVRational base) {
 
 class VideoFile final : public Source {
  public:
-  Result<void> open(const std::filesystem::path& path);
+  Result<void> open(const std::filesystem::path& path, std::optional<int> track);
   Size size() const override { return size_; }
   std::int64_t count() const override { return announced_; }
   bool still() const override { return false; }
@@ -41,6 +43,7 @@ class VideoFile final : public Source {
   std::int64_t announced_packets() const;
   TimeNs announced_end_ns() const;
   TimeNs frame_ns() const {
+    if (recorded_frame_ns_ > 0) return recorded_frame_ns_;
     const AVRational rate = stream().avg_frame_rate;
     return rate.num > 0 && rate.den > 0 ? to_ns(1, av_inv_q(rate)) : 33'333'333;
   }
@@ -51,23 +54,35 @@ class VideoFile final : public Source {
   av::Decoder decoder_;
   av::DecodedFrame frame_{av_frame_alloc()};
   av::Packet packet_{av_packet_alloc()};
+  av::Packet sent_{av_packet_alloc()};  // the last one the decoder got: frame_'s where each packet is a picture
   av::ToRgb to_rgb_;
   int stream_ = -1;
   Size size_;
-  std::int64_t announced_ = 0;  // packets; 0 = not announced
-  std::int64_t packets_ = 0;    // whole ones read so far
-  TimeNs shown_ns_ = 0;         // time of the last picture decoded
-  TimeNs end_ns_ = 0;           // where the last packet ends
+  std::int64_t announced_ = 0;    // packets; 0 = not announced
+  std::int64_t packets_ = 0;      // whole ones read so far
+  TimeNs shown_ns_ = 0;           // time of the last picture decoded
+  TimeNs recorded_frame_ns_ = 0;  // of our own recordings: from picture to picture; 0: not one
+  TimeNs end_ns_ = 0;             // where the last packet ends
   std::uint64_t given_ = 0;
   bool drained_ = false;  // the decoder was told that nothing follows
   bool cut_ = false;
   bool pending_ = false;  // frame_ holds a picture that next() has not given yet
 };
 
-Result<void> VideoFile::open(const std::filesystem::path& path) {
+/// Number `track` of the video streams, or the best of them; below 0 when there is none.
+int video_stream(AVFormatContext* container, std::optional<int> track) {
+  if (!track) return av_find_best_stream(container, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  for (unsigned i = 0; i < container->nb_streams; ++i)
+    if (container->streams[i]->codecpar->codec_type == AVMEDIA_TYPE_VIDEO &&
+        (container->streams[i]->disposition & AV_DISPOSITION_ATTACHED_PIC) == 0 && (*track)-- == 0)
+      return static_cast<int>(i);
+  return -1;
+}
+
+Result<void> VideoFile::open(const std::filesystem::path& path, std::optional<int> track) {
   name_ = path.string();
   AVFormatContext* context = avformat_alloc_context();
-  if (context == nullptr || !frame_ || !packet_) return unreadable(path, "out of memory");
+  if (context == nullptr || !frame_ || !packet_ || !sent_) return unreadable(path, "out of memory");
   context->format_whitelist = av_strdup(kContainers);
   context->protocol_whitelist = av_strdup("file");
   // Frees the context itself when it fails.
@@ -75,7 +90,7 @@ Result<void> VideoFile::open(const std::filesystem::path& path) {
     return unreadable(path, "it is no picture or video that can be read, or it was cut before its index was written");
   container_.reset(context);
   if (const int e = avformat_find_stream_info(context, nullptr); e < 0) return unreadable(path, av::reason(e));
-  stream_ = av_find_best_stream(context, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  stream_ = video_stream(context, track);
   if (stream_ < 0) return unreadable(path, "it holds no video");
   for (unsigned i = 0; i < context->nb_streams; ++i)
     context->streams[i]->discard = static_cast<int>(i) == stream_ ? AVDISCARD_DEFAULT : AVDISCARD_ALL;
@@ -86,6 +101,8 @@ Result<void> VideoFile::open(const std::filesystem::path& path) {
   if (!decoder_)
     return Error{ErrorCode::kUnsupported,
                  fmt::format("cannot read video {}: no decoder for {}", name_, avcodec_get_name(stream().codecpar->codec_id))};
+  if (const AVDictionaryEntry* tag = av_dict_get(context->metadata, CaptureMark::kFrameTag, nullptr, 0); tag != nullptr)
+    recorded_frame_ns_ = std::atoll(tag->value);
   announced_ = announced_packets();
   if (decode() != Decoded::kFrame) return unreadable(path, "no whole picture at its start");
   pending_ = true;
@@ -120,6 +137,8 @@ TimeNs VideoFile::announced_end_ns() const {
 VideoFile::Decoded VideoFile::end_of_file() const {
   if (cut_ || packets_ < announced_) return Decoded::kCut;
   const TimeNs announced_end = announced_ > 0 ? 0 : announced_end_ns();
+  // A recording says its length when it is finished.
+  if (recorded_frame_ns_ > 0 && announced_end == 0) return Decoded::kCut;
   // Half a picture of tolerance: containers round durations to milliseconds.
   return announced_end > 0 && end_ns_ < announced_end - frame_ns() / 2 ? Decoded::kCut : Decoded::kEnd;
 }
@@ -156,7 +175,8 @@ VideoFile::Decoded VideoFile::decode() {
     cut_ = !whole && read != AVERROR_EOF;
     drained_ = !whole;
     const int sent = avcodec_send_packet(decoder_.get(), whole ? packet_.get() : nullptr);
-    av_packet_unref(packet_.get());
+    av_packet_unref(sent_.get());
+    av_packet_move_ref(sent_.get(), packet_.get());
     if (sent < 0 && sent != AVERROR_EOF) {
       // What the decoder holds back is whole: it is still given.
       cut_ = drained_ = true;
@@ -178,14 +198,20 @@ Result<Next> VideoFile::next(Picture& into) {
                  fmt::format("cannot read video {}: its size or kind of pixels is not supported", name_)};
   into.t_ns = to_ns(frame_->best_effort_timestamp, stream().time_base);
   into.sequence = given_++;
+  into.jpeg.clear();
+  if (decoder_->codec_id == AV_CODEC_ID_MJPEG) into.jpeg.assign(sent_->data, sent_->data + sent_->size);
+  if (const auto mark = CaptureMark::of(*sent_)) {
+    into.t_ns = mark->t_ns;
+    into.sequence = mark->sequence;
+  }
   return Next::kPicture;
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Source>> open_video(const std::filesystem::path& path) {
+Result<std::unique_ptr<Source>> open_video(const std::filesystem::path& path, std::optional<int> track) {
   auto video = std::make_unique<VideoFile>();
-  DUO_TRY(video->open(path));
+  DUO_TRY(video->open(path, track));
   return std::unique_ptr<Source>(std::move(video));
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <string>
 
 #include "core/libav.h"
@@ -21,13 +20,6 @@ class AviWriter {
   Result<void> finish();
 
  private:
-  struct FreeMuxer {
-    void operator()(AVFormatContext* p) const {
-      avio_closep(&p->pb);
-      avformat_free_context(p);
-    }
-  };
-
   explicit AviWriter(std::string name, int frames_per_second, int jpeg_quality)
       : name_(std::move(name)), rate_{frames_per_second, 1}, quality_(jpeg_quality) {}
   Error failed(int error) const;
@@ -36,7 +28,7 @@ class AviWriter {
   AVRational rate_;
   int quality_;
   std::int64_t count_ = 0;
-  std::unique_ptr<AVFormatContext, FreeMuxer> muxer_;
+  av::Muxer muxer_;
   av::Packet packet_;
 };
 

@@ -114,9 +114,9 @@ void CameraSource::leave(const std::string& why) {
 
 /// Looks for the camera once; waits a while when it is not there.
 bool CameraSource::come_back() {
-  constexpr int kLookEvery_ms = 200, kMostDevices = 64;
+  constexpr int kLookEvery_ms = 200;
   for (int i = 0; i < kMostDevices; ++i) {
-    auto device = CameraDevice::open(system_, fmt::format("/dev/video{}", i));
+    auto device = CameraDevice::open(system_, device_path(i));
     if (!device) continue;
     const CameraInfo& found = device->info();
     if (found.bus_path != camera_.bus_path || found.name != camera_.name || found.serial != camera_.serial) continue;

@@ -180,7 +180,8 @@ Result<void> CameraDevice::map_buffers() {
 }
 
 CameraDevice::Take CameraDevice::take(int timeout_ms, TakenBuffer& into) {
-  const int events = system_->poll(fd_, timeout_ms);
+  // Kernels have called it an error to poll while all buffers are out, so only who waits does.
+  const int events = timeout_ms > 0 ? system_->poll(fd_, timeout_ms) : POLLIN;
   if (events == 0) return Take::kNothing;
   if (events < 0) return errno == EINTR ? Take::kNothing : Take::kGone;
   if ((events & (POLLERR | POLLHUP | POLLNVAL)) != 0) return Take::kGone;

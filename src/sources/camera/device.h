@@ -59,7 +59,7 @@ class CameraDevice {
   const CameraFormat& format() const { return format_; }
 
   enum class Take : std::uint8_t { kBuffer, kNothing, kGone };
-  /// The next filled buffer, waiting `timeout_ms` for it at most.
+  /// The next filled buffer, waiting `timeout_ms` for it at most; 0 only looks.
   Take take(int timeout_ms, TakenBuffer& into);
   void give_back(const TakenBuffer& buffer);
 

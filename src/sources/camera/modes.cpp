@@ -12,7 +12,6 @@
 namespace duo {
 namespace {
 
-constexpr int kMostDevices = 64;     // numbers that the kernel gives to video devices, by default
 constexpr std::uint32_t kMost = 64;  // answers to one question; a driver that never ends is stopped there
 constexpr char kPrefix[] = "camera:";
 
@@ -137,10 +136,12 @@ Result<std::string> common_format(const CameraInfo& left, const CameraInfo& righ
   return first == second ? fourcc_text(first) : fourcc_text(first) + "+" + fourcc_text(second);
 }
 
+std::string device_path(int number) { return fmt::format("/dev/video{}", number); }
+
 std::vector<CameraInfo> list_cameras(const SystemCalls& system, std::optional<Error>* refused) {
   std::vector<CameraInfo> out;
   for (int i = 0; i < kMostDevices; ++i) {
-    auto device = CameraDevice::open(system, fmt::format("/dev/video{}", i));
+    auto device = CameraDevice::open(system, device_path(i));
     if (device) {
       out.push_back(device->info());
       out.back().modes = device->modes();
@@ -175,7 +176,7 @@ Result<std::string> camera_path(const SystemCalls& system, const std::string& na
   const std::string which = name.substr(sizeof kPrefix - 1);
   const bool number = !which.empty() && which.size() <= 3 &&
                       std::all_of(which.begin(), which.end(), [](char c) { return c >= '0' && c <= '9'; });
-  if (number) return "/dev/video" + which;
+  if (number) return device_path(std::stoi(which));
   std::string there;
   for (const CameraInfo& camera : list_cameras(system)) {
     if (camera.bus_path == which) return camera.path;

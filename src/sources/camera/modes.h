@@ -22,6 +22,10 @@ Result<std::uint32_t> choose_format(const CameraInfo& camera, const CameraWish& 
 bool raw_fits(const CameraInfo& camera, const CameraWish& wish);
 bool raw_fits(const CameraInfo& left, const CameraInfo& right, const CameraWish& wish);
 
+/// Where the kernel puts cameras: /dev/video0 to that of kMostDevices - 1, its default.
+inline constexpr int kMostDevices = 64;
+std::string device_path(int number);
+
 /// All that can be opened, with their modes. `refused`, when given, is why the first of the others could not.
 std::vector<CameraInfo> list_cameras(const SystemCalls& system, std::optional<Error>* refused = nullptr);
 

@@ -100,7 +100,7 @@ TEST(LivePairs, RightPairsWithTheirTrueSkewThroughJitterLossesAndUnplugging) {
   for (std::size_t i = 0; i < 2; ++i) {
     desk.cameras[i].jitter_ns = [i](std::int64_t n) {
       std::mt19937 random(static_cast<unsigned>(2 * n) + static_cast<unsigned>(i));
-      return std::uniform_int_distribution<std::int64_t>(-1 * kMs, 1 * kMs)(random);
+      return std::uniform_int_distribution<std::int64_t>(-2 * kMs, 2 * kMs)(random);
     };
     desk.cameras[i].loses = [i](std::int64_t n) { return n % 31 == 3 + static_cast<std::int64_t>(i); };
   }
@@ -120,8 +120,8 @@ TEST(LivePairs, RightPairsWithTheirTrueSkewThroughJitterLossesAndUnplugging) {
       right += std::abs(pair.right.t_ns - pair.left.t_ns - kSkew) < 1 * kMs;
     }
   };
-  run_until(1500 * kMs, false);  // the clocks of the cameras are learnt
-  run_until(5000 * kMs, true);
+  run_until(3500 * kMs, false);  // the clocks of the cameras are learnt
+  run_until(7000 * kMs, true);
   EXPECT_GT(given, 30);
   EXPECT_GE(right, given * 99 / 100);
 

@@ -1,0 +1,40 @@
+// What a recording keeps of a picture beside its packet: Matroska's own times are whole milliseconds.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/libav.h"
+
+extern "C" {
+#include <libavutil/intreadwrite.h>
+}
+
+namespace duo {
+
+/// Capture time and number of a picture, as the packet's BlockAdditional: two big-endian 64-bit numbers. It lies in the same
+/// element as the picture, so that a cut keeps both or none.
+struct CaptureMark {
+  static constexpr const char* kFrameTag = "DUOPTIC_FRAME_NS";  // of the file: time between pictures; marks a recording of ours
+
+  std::int64_t t_ns = 0;  // since the first capture of the recording
+  std::uint64_t sequence = 0;
+
+  /// False without memory.
+  bool put(AVPacket& packet) const {
+    std::uint8_t* data = av_packet_new_side_data(&packet, AV_PKT_DATA_MATROSKA_BLOCKADDITIONAL, 24);
+    if (data == nullptr) return false;
+    AV_WB64(data, 1);  // BlockAddID 1: means what the writer wants it to
+    AV_WB64(data + 8, static_cast<std::uint64_t>(t_ns));
+    AV_WB64(data + 16, sequence);
+    return true;
+  }
+  static std::optional<CaptureMark> of(const AVPacket& packet) {
+    std::size_t bytes = 0;
+    const std::uint8_t* data = av_packet_get_side_data(&packet, AV_PKT_DATA_MATROSKA_BLOCKADDITIONAL, &bytes);
+    if (data == nullptr || bytes != 24 || AV_RB64(data) != 1) return std::nullopt;
+    return CaptureMark{static_cast<std::int64_t>(AV_RB64(data + 8)), AV_RB64(data + 16)};
+  }
+};
+
+}  // namespace duo

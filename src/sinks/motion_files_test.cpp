@@ -1,0 +1,213 @@
+// What other programs read: axes and tables by hand, a BVH through a strict parser and forward kinematics.
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <sstream>
+
+#include "duoptic/sink.h"
+#include "tests/arm_poses.h"
+#include "tests/write_media.h"
+
+namespace duo {
+namespace {
+
+using namespace test;  // NOLINT: the poses
+
+TEST(Axes, TheSamePointByHand) {
+  const Vec3 p{1, 2, 3};  // a metre to the right, two down, three ahead
+  const std::pair<std::string_view, Vec3> table[] = {
+      {"opencv", {1, 2, 3}}, {"ros", {3, -1, -2}}, {"opengl", {1, -2, -3}}, {"unity", {1, -2, 3}}};
+  for (const auto& [name, want] : table) {
+    const auto axes = axes_of(name);
+    ASSERT_TRUE(axes) << name;
+    EXPECT_EQ(axes_from_rig(*axes) * p, want) << name;
+    EXPECT_EQ(determinant(axes_from_rig(*axes)), name == "unity" ? -1 : 1) << name;
+  }
+  EXPECT_EQ(std::size(table), kAxesNames.size());
+  const auto unknown = axes_of("maya");
+  ASSERT_FALSE(unknown);
+  EXPECT_NE(unknown.error().what.find("opencv, ros, opengl, unity"), std::string::npos);
+}
+
+TEST(Csv, BytesByHand) {
+  const test::TempFolder folder;
+  Instant instant;
+  instant.arms = {arm_of({0.1, -0.25, 1.5}, {-0.00001, 0, 2}, {1, 2, 3})};
+  instant.arms[0][Joint::kElbow].state = JointState::kInferred;
+  instant.arms[0][Joint::kShoulder].state = JointState::kLost;
+  instant.arms.push_back(instant.arms[0]);
+  auto sink = make_csv(folder / "arm.csv", Axes::kRos);
+  ASSERT_TRUE(sink) << sink.error().what;
+  ASSERT_TRUE((*sink)->write(instant.tracked(57)));
+  instant.arms.clear();
+  ASSERT_TRUE((*sink)->write(instant.tracked(58)));
+  EXPECT_FALSE(std::filesystem::exists(folder / "arm.csv"));
+  ASSERT_TRUE((*sink)->finish());
+  const std::string cells =
+      "3.0000,-1.0000,-2.0000,seen,0.0125,0.900,2.0000,0.0000,0.0000,inferred,0.0125,0.900,,,,lost,0.0125,0.900\n";
+  EXPECT_EQ(bytes_of(folder / "arm.csv"),
+            "frame,t_s,arm,hand_x_m,hand_y_m,hand_z_m,hand_state,hand_sigma_m,hand_confidence,elbow_x_m,elbow_y_m,elbow_z_m,"
+            "elbow_state,elbow_sigma_m,elbow_confidence,shoulder_x_m,shoulder_y_m,shoulder_z_m,shoulder_state,shoulder_sigma_m,"
+            "shoulder_confidence\n57,1.900000,1," +
+                cells + "57,1.900000,2," + cells);
+}
+
+// --- BVH ------------------------------------------------------------------------------------------------------------------
+
+struct BvhJoint {
+  std::string name;
+  int parent = -1;
+  Vec3 offset;
+  std::vector<std::string> channels;
+};
+
+/// Takes nothing that the format does not have, in no other order.
+struct BvhFile {
+  std::vector<BvhJoint> joints;
+  std::vector<std::vector<double>> frames;
+  double frame_s = 0;
+  bool good = false;
+
+  explicit BvhFile(const std::string& text) : in_(text) { good = parse(); }
+
+  /// Places of all joints in one frame.
+  std::vector<Vec3> places(std::size_t frame) const {
+    std::vector<Vec3> out(joints.size());
+    std::vector<Mat3> turned(joints.size());
+    std::size_t value = 0;
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      const bool root = joints[i].parent < 0;
+      const auto parent = static_cast<std::size_t>(std::max(joints[i].parent, 0));
+      Vec3 t = joints[i].offset;
+      Mat3 r;
+      for (const std::string& channel : joints[i].channels) {
+        const double v = frames[frame][value++];
+        const double a = v * std::numbers::pi / 180, c = std::cos(a), s = std::sin(a);
+        if (channel == "Xposition") t.x += v;
+        if (channel == "Yposition") t.y += v;
+        if (channel == "Zposition") t.z += v;
+        if (channel == "Xrotation") r = r * Mat3{{1, 0, 0, 0, c, -s, 0, s, c}};
+        if (channel == "Yrotation") r = r * Mat3{{c, 0, s, 0, 1, 0, -s, 0, c}};
+        if (channel == "Zrotation") r = r * Mat3{{c, -s, 0, s, c, 0, 0, 0, 1}};
+      }
+      out[i] = root ? t : out[parent] + turned[parent] * t;
+      turned[i] = root ? r : turned[parent] * r;
+    }
+    return out;
+  }
+
+ private:
+  bool word(const std::string& want) {
+    std::string got;
+    return in_ >> got && got == want;
+  }
+  bool three(Vec3& v) { return static_cast<bool>(in_ >> v.x >> v.y >> v.z); }
+  bool body(const std::string& name, int parent) {
+    BvhJoint made{name, parent, {}, {}};
+    int count = 0;
+    if (!word("{") || !word("OFFSET") || !three(made.offset) || !word("CHANNELS") || !(in_ >> count)) return false;
+    if (count != (parent < 0 ? 6 : 3)) return false;
+    made.channels.resize(static_cast<std::size_t>(count));
+    for (std::string& channel : made.channels) in_ >> channel;
+    const int self = static_cast<int>(joints.size());
+    joints.push_back(made);
+    std::string next;
+    in_ >> next;
+    Vec3 end;
+    if (next == "End")
+      return word("Site") && word("{") && word("OFFSET") && three(end) && norm(end) > 0 && word("}") && word("}");
+    return next == "JOINT" && in_ >> next && body(next, self) && word("}");
+  }
+  bool parse() {
+    std::string next;
+    if (!word("HIERARCHY")) return false;
+    while (in_ >> next && next == "ROOT")
+      if (!(in_ >> next) || !body(next, -1)) return false;
+    std::size_t count = 0, values = 0;
+    if (next != "MOTION" || !word("Frames:") || !(in_ >> count) || !word("Frame") || !word("Time:") || !(in_ >> frame_s))
+      return false;
+    for (const BvhJoint& joint : joints) values += joint.channels.size();
+    std::getline(in_, next);
+    for (std::string line; std::getline(in_, line);) {
+      std::istringstream numbers(line);
+      auto& frame = frames.emplace_back();
+      for (double v = 0; numbers >> v;) frame.push_back(v);
+      if (!numbers.eof() || frame.size() != values) return false;
+    }
+    return frames.size() == count;
+  }
+
+  std::istringstream in_;
+};
+
+Vec3 y_up(const ArmPose& arm, Joint which) { return axes_from_rig(Axes::kOpengl) * arm[which].p_in_rig_m; }
+
+TEST(Bvh, ForwardKinematicsGivesTheJointsBack) {
+  const test::TempFolder folder;
+  constexpr int kFrames = 200;
+  const auto right = wandering_arm(kFrames, 1), left = wandering_arm(kFrames, 2);
+  auto sink = make_bvh(folder / "arms.bvh", recording_of(Side::kRight));
+  ASSERT_TRUE(sink) << sink.error().what;
+  Instant instant;
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    instant.arms = {right[i], left[i]};
+    ASSERT_TRUE((*sink)->write(instant.tracked(static_cast<std::int64_t>(i))));
+  }
+  ASSERT_TRUE((*sink)->finish());
+  const BvhFile bvh(bytes_of(folder / "arms.bvh"));
+  ASSERT_TRUE(bvh.good);
+  ASSERT_EQ(bvh.frames.size(), static_cast<std::size_t>(kFrames));
+  EXPECT_NEAR(bvh.frame_s, 1.0 / 30, 1e-7);
+  const std::vector<std::string> names = {"RightArm", "RightForeArm", "RightHand", "LeftArm", "LeftForeArm", "LeftHand"};
+  ASSERT_EQ(bvh.joints.size(), names.size());
+  for (std::size_t j = 0; j < names.size(); ++j) EXPECT_EQ(bvh.joints[j].name, names[j]);
+  // The person looks along z, away from the camera's view: left is +x.
+  EXPECT_NEAR(bvh.joints[1].offset.x, -kUpper_m, 1e-6);
+  EXPECT_NEAR(bvh.joints[4].offset.x, kUpper_m, 1e-6);
+  EXPECT_NEAR(bvh.joints[5].offset.x, kLower_m, 1e-6);
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    const std::vector<Vec3> places = bvh.places(i);
+    for (std::size_t arm = 0; arm < 2; ++arm) {
+      const ArmPose& want = arm == 0 ? right[i] : left[i];
+      EXPECT_LT(norm(places[3 * arm] - y_up(want, Joint::kShoulder)), 1e-3) << i;
+      EXPECT_LT(norm(places[3 * arm + 1] - y_up(want, Joint::kElbow)), 1e-3) << i;
+      EXPECT_LT(norm(places[3 * arm + 2] - y_up(want, Joint::kHand)), 1e-3) << i;
+    }
+  }
+}
+
+TEST(Bvh, LostAndLeftOutFramesHoldTheLastPose) {
+  const test::TempFolder folder;
+  auto poses = wandering_arm(3, 3);
+  auto sink = make_bvh(folder / "arm.bvh", recording_of(Side::kLeft));
+  ASSERT_TRUE(sink);
+  Instant instant;
+  const auto write = [&](std::int64_t number, ArmPose pose) {
+    instant.arms = {pose};
+    ASSERT_TRUE((*sink)->write(instant.tracked(number)));
+  };
+  ArmPose lost = poses[2];
+  lost[Joint::kHand].state = JointState::kLost;
+  write(10, lost);  // before anything is known
+  write(11, poses[0]);
+  write(14, poses[1]);  // 12 and 13 were dropped
+  write(15, lost);
+  ASSERT_TRUE((*sink)->finish());
+  const BvhFile bvh(bytes_of(folder / "arm.bvh"));
+  ASSERT_TRUE(bvh.good);
+  ASSERT_EQ(bvh.frames.size(), 6u);
+  for (const std::size_t i : {0, 1, 2, 3, 4, 5})
+    EXPECT_LT(norm(bvh.places(i)[2] - y_up(poses[i < 4 ? 0 : 1], Joint::kHand)), 1e-3) << i;
+}
+
+TEST(Bvh, NothingKnownIsStillAFile) {
+  const test::TempFolder folder;
+  auto sink = make_bvh(folder / "arm.bvh", recording_of(Side::kLeft));
+  ASSERT_TRUE(sink);
+  ASSERT_TRUE((*sink)->write(Instant{}.tracked(0)));
+  ASSERT_TRUE((*sink)->finish());
+  EXPECT_TRUE(BvhFile(bytes_of(folder / "arm.bvh")).good);
+}
+
+}  // namespace
+}  // namespace duo

@@ -1,0 +1,175 @@
+// `duoptic record` and `play` as their users meet them, and `track` on what they wrote.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "duoptic/rig.h"
+#include "duoptic/source.h"
+#include "duoptic/synthetic.h"
+#include "sinks/clip/avi.h"
+#include "sinks/video_writer.h"
+#include "tool.h"
+
+namespace duo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::Ended;
+using test::put;
+
+constexpr int kUsage = 2, kCut = 3, kInput = 4, kOutput = 5;
+constexpr int kPairs = 6;
+constexpr char kSelect[] = " --select hand=160,100 --select elbow=160,77 --select shoulder=160,54 ";
+
+/// The synthetic room as two AVIs of JPEGs and as two MP4s, each also as a recording.
+class Record : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<test::TempFolder>();
+    const SyntheticSetup setup{.size = {320, 240}};
+    const SyntheticPair raw = render_synthetic(setup, 2);
+    for (const bool right : {false, true}) {
+      const std::string side = right ? "right" : "left";
+      auto avi = AviWriter::open(at(side + ".avi"), setup.size, 30, 90);
+      auto mp4 = VideoWriter::open(at(side + ".mp4"), setup.size, 1.0 / 30);
+      ASSERT_TRUE(avi && mp4);
+      const Image<Rgb8>& pixels = (right ? raw.pair.right : raw.pair.left).pixels;
+      for (int i = 0; i < kPairs; ++i) ASSERT_TRUE(avi->write(pixels) && mp4->write(pixels));
+      ASSERT_TRUE(avi->finish() && mp4->finish());
+    }
+    ASSERT_TRUE(save_rig(raw.rig, at("rig.json")));
+    ASSERT_EQ(run("record left.avi right.avi --rig rig.json -o jpeg.mkv").exit, 0);
+    ASSERT_EQ(run("record left.mp4 right.mp4 --rig rig.json -o raw.mkv --quiet").exit, 0);
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static fs::path at(const std::string& name) { return *folder_ / name; }
+  static Ended run(const std::string& arguments, const std::string& before = "") {
+    return test::run_tool(at(""), arguments, before);
+  }
+  static void expect_failure(const std::string& arguments, int exit, const std::string& words, const std::string& before = "") {
+    SCOPED_TRACE(arguments);
+    const Ended ended = run(arguments, before);
+    EXPECT_EQ(ended.exit, exit) << ended.err;
+    EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+    EXPECT_NE(ended.err.find(words), std::string::npos) << ended.err;
+    EXPECT_EQ(ended.out, "");
+  }
+  /// Without the header, which names the sources.
+  static std::string lines(const std::string& text) { return text.substr(text.find('\n') + 1); }
+
+ private:
+  inline static std::unique_ptr<test::TempFolder> folder_;
+};
+
+TEST_F(Record, TrackGivesTheBytesThatItGaveOnTheSource) {
+  for (const std::string kind : {"avi", "mp4"}) {
+    const Ended source = run("track left." + kind + " right." + kind + " --rig rig.json" + kSelect);
+    const Ended recording = run(std::string("track ") + (kind == "avi" ? "jpeg.mkv" : "raw.mkv") + kSelect);
+    ASSERT_EQ(source.exit, 0) << source.err;
+    ASSERT_EQ(recording.exit, 0) << recording.err;
+    EXPECT_EQ(lines(recording.out), lines(source.out));
+    EXPECT_EQ(std::count(source.out.begin(), source.out.end(), '\n'), 1 + kPairs);
+    auto a = nlohmann::json::parse(source.out.substr(0, source.out.find('\n')), nullptr, false),
+         b = nlohmann::json::parse(recording.out.substr(0, recording.out.find('\n')), nullptr, false);
+    a.erase("sources");
+    b.erase("sources");
+    EXPECT_EQ(a, b);
+  }
+}
+
+TEST_F(Record, EveryCommandTakesARecordingWithItsRig) {
+  const Ended depth = run("depth jpeg.mkv --every 5 --near 1 -o depth_out --quiet");
+  EXPECT_EQ(depth.exit, 0) << depth.err;
+  EXPECT_TRUE(fs::exists(at("depth_out/frame_000005/cloud.ply")));  // its rig is known
+  const Ended check = run("rig check rig.json jpeg.mkv --json");
+  EXPECT_TRUE(check.json().contains("scene")) << check.err;
+  const Ended again = run("record jpeg.mkv -o again.mkv --json");
+  EXPECT_EQ(again.json()["rig"], true);
+  EXPECT_EQ(again.json()["codecs"], "MJPEG, MJPEG");
+  EXPECT_EQ(bytes_of(at("again.mkv")), bytes_of(at("jpeg.mkv")));
+}
+
+TEST_F(Record, PlayTellsAndExports) {
+  const Ended played = run("play jpeg.mkv --json --export parts");
+  ASSERT_EQ(played.exit, 0) << played.err;
+  const auto report = played.json();
+  EXPECT_EQ(report["pairs"], kPairs);
+  EXPECT_EQ(report["left"]["codec"], "mjpeg");
+  EXPECT_NEAR(report["rate_hz"], 30, 1e-3);
+  EXPECT_EQ(report["cut"], false);
+  EXPECT_EQ(report["files"].size(), 4u);
+  EXPECT_EQ(bytes_of(at("parts/rig.json")), bytes_of(at("rig.json")));
+  const Ended back = run("record parts/left.avi parts/right.avi --rig parts/rig.json -o back.mkv");
+  EXPECT_EQ(back.exit, 0) << back.err;
+  EXPECT_EQ(bytes_of(at("back.mkv")), bytes_of(at("jpeg.mkv")));
+  EXPECT_NE(run("play raw.mkv").out.find("left ffv1, right ffv1, 320x240"), std::string::npos);
+  expect_failure("play left.avi", kInput, "it is no recording");
+  expect_failure("play none.mkv", kInput, "no such file");
+}
+
+TEST_F(Record, CutRecordingGivesItsWholePairs) {
+  const std::string whole = bytes_of(at("jpeg.mkv"));
+  put(at("cut.mkv"), std::string_view(whole).substr(0, whole.size() / 2));
+  const Ended tracked = run("track cut.mkv -o cut.jsonl --quiet" + std::string(kSelect));
+  EXPECT_EQ(tracked.exit, kCut) << tracked.err;
+  EXPECT_NE(tracked.err.find("cut.mkv is cut short"), std::string::npos) << tracked.err;
+  EXPECT_EQ(run("play cut.mkv").exit, kCut);
+  put(at("head.mkv"), std::string_view(whole).substr(0, 900));
+  expect_failure("track head.mkv" + std::string(kSelect), kInput, "head.mkv");
+}
+
+TEST_F(Record, SecondsAndNames) {
+  const Ended ended = run("record left.avi right.avi -o part.mkv --seconds 0.09 --json");
+  EXPECT_EQ(ended.json()["pairs"], 3) << ended.err;
+  expect_failure("track part.mkv" + std::string(kSelect), kUsage, "--rig");
+  expect_failure("record left.avi right.avi -o part.mkv", kOutput, "choose another name");
+  EXPECT_EQ(run("record left.avi right.avi -o part.mkv --force").exit, 0);
+  expect_failure("record left.avi right.avi -o none/a.mkv", kOutput, "make the folder first");
+  expect_failure("record left.avi none.avi -o never.mkv", kInput, "none.avi");
+  ASSERT_TRUE(save_rig(synthetic_rig({.size = {640, 480}}), at("other.json")));
+  expect_failure("record left.avi right.avi --rig other.json -o never.mkv", kInput, "640x480");
+  EXPECT_FALSE(fs::exists(at("never.mkv")));
+}
+
+TEST_F(Record, FullDiskKeepsWhatWasRecorded) {
+  const auto blocks = fs::file_size(at("raw.mkv")) / 512 * 2 / 3;
+  expect_failure("record left.mp4 right.mp4 -o full.mkv", kOutput, "pairs, is in it",
+                 "ulimit -f " + std::to_string(blocks) + ";");
+  const Ended played = run("play full.mkv --json");
+  EXPECT_EQ(played.exit, 0) << played.err;
+  EXPECT_GE(played.json()["pairs"], 2);
+  expect_failure("record left.mp4 right.mp4 -o empty.mkv", kOutput, "empty.mkv", "ulimit -f 4;");
+  EXPECT_FALSE(fs::exists(at("empty.mkv")));
+}
+
+TEST_F(Record, SeveralSinksAtOnceOrNone) {
+  const std::string track = "track jpeg.mkv" + std::string(kSelect);
+  const Ended all = run(track +
+                        "-o a.jsonl --csv a.csv --csv b.csv --bvh a.bvh --osc 127.0.0.1:9 --vmc 127.0.0.1:9 --vmc localhost:9 "
+                        "--axes unity --arm left --quiet");
+  EXPECT_EQ(all.exit, 0) << all.err;
+  const std::string table = bytes_of(at("a.csv"));
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + kPairs);
+  EXPECT_EQ(table, bytes_of(at("b.csv")));
+  EXPECT_NE(bytes_of(at("a.bvh")).find("ROOT LeftArm"), std::string::npos);
+  expect_failure(track + "-o c.jsonl --csv c.csv --osc nowhere", kInput, "HOST:PORT");
+  expect_failure(track + "-o c.jsonl --csv c.csv --bvh none/a.bvh", kOutput, "make the folder first");
+  expect_failure(track + "--axes maya", kUsage, "maya");
+  EXPECT_FALSE(fs::exists(at("c.csv")) || fs::exists(at("c.jsonl")));
+}
+
+/// As live, with a thread for each sink that could wait.
+TEST_F(Record, RealTimeTakesNewestFirst) {
+  const Ended ended =
+      run("track jpeg.mkv --realtime --stats -o live.jsonl --csv live.csv --video live.mp4" + std::string(kSelect));
+  ASSERT_EQ(ended.exit, 0) << ended.err;
+  const std::string text = bytes_of(at("live.jsonl"));
+  EXPECT_GE(std::count(text.begin(), text.end(), '\n'), 2);
+  EXPECT_NE(ended.err.find("frames/s"), std::string::npos) << ended.err;
+}
+
+}  // namespace
+}  // namespace duo
