@@ -121,7 +121,12 @@ void Player::loop(bool on) {
 void Player::select(const std::vector<ArmSelection>& arms) {
   post([this, arms] {
     if (!has_frame_ || !run_) return;
-    if (const auto selected = run_->select(arms); !selected) return fail(selected.error(), false);
+    if (const auto selected = run_->select(arms); !selected) {
+      fail(selected.error(), false);
+      const std::lock_guard lock(mutex_);
+      ++status_.refused;
+      return;
+    }
     selected_.emplace(static_cast<std::int64_t>(run_->frames().last().pair.sequence), arms);
     {
       const std::lock_guard lock(mutex_);

@@ -46,6 +46,7 @@ struct PlayerStatus {
   bool loop = false;
   bool silent = false;  // live, and no pictures come
   std::int64_t dropped = 0, lines = 0;
+  int refused = 0;            // selections, so far
   std::string event;          // live: what cameras and their skew do to the result; empty: nothing
   std::string problem;        // of the last thing tried; empty: none
   bool checking_rig = false;  // scene_health() is at it

@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 
 #include <memory>
+#include <utility>
 
 #include "command.h"
 #include "interrupt.h"
@@ -74,6 +75,9 @@ class Viewer {
 
  private:
   void take_newest() {
+    // Clicks that were refused are asked for again; the side says why.
+    if (const int refused = player_.status().refused; refused != std::exchange(refused_, refused))
+      clicks_.start(clicks_.arms());
     const auto newest = player_.newest();
     if (!newest || newest == shown_) return;
     shown_ = newest;
@@ -163,6 +167,7 @@ class Viewer {
   Clicks clicks_;
   std::shared_ptr<const Shown> shown_;
   std::string note_;
+  int refused_ = 0;  // selections, so far
   bool resume_ = true, done_ = false;
 };
 
