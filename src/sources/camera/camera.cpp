@@ -170,7 +170,7 @@ void CameraSource::count(const TakenBuffer& buffer) {
 
 bool CameraSource::decode(const TakenBuffer& buffer, Picture& into) {
   if (buffer.damaged) return false;
-  const auto outcome = decoder_.decode(device_->format(), buffer.bytes, into.pixels);
+  const auto outcome = decoder_.decode(device_->format(), buffer.bytes, into);
   if (outcome != CameraDecoder::Outcome::kOtherSize)
     other_sizes_ = 0;
   else if (++other_sizes_ >= kMostOtherSizes)

@@ -110,6 +110,9 @@ TEST(LiveCamera, DamagedPicturesAreLostNotGiven) {
     ++given;
     const std::int64_t n = number_at(picture.t_ns);
     EXPECT_EQ(n % 4, 0) << n;
+    EXPECT_TRUE(std::equal(whole.begin(), whole.end(), picture.jpeg.begin(), picture.jpeg.end(),
+                           [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; }))
+        << "as the camera sent it, without what fills the buffer";
   }
   EXPECT_NEAR(static_cast<double>(camera->dropped()), 3 * given, 4);
   fake.damaged = [](std::int64_t) { return true; };

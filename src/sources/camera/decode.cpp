@@ -21,11 +21,11 @@ av::Decoder jpeg_decoder() {
 
 bool CameraDecoder::is_known(std::uint32_t code) { return std::find(kFourccs.begin(), kFourccs.end(), code) != kFourccs.end(); }
 
-CameraDecoder::Outcome CameraDecoder::decode(const CameraFormat& format, std::string_view bytes, Image<Rgb8>& into) {
+CameraDecoder::Outcome CameraDecoder::decode(const CameraFormat& format, std::string_view bytes, Picture& into) {
   return is_raw(format.fourcc) ? decode_raw(format, bytes, into) : decode_jpeg(format, bytes, into);
 }
 
-CameraDecoder::Outcome CameraDecoder::decode_raw(const CameraFormat& format, std::string_view bytes, Image<Rgb8>& into) {
+CameraDecoder::Outcome CameraDecoder::decode_raw(const CameraFormat& format, std::string_view bytes, Picture& into) {
   const std::size_t row_bytes = std::size_t{2} * static_cast<std::size_t>(format.size.width);
   const std::size_t stride = std::max(static_cast<std::size_t>(std::max(format.stride_bytes, 0)), row_bytes);
   if (!frame_ || bytes.size() < stride * static_cast<std::size_t>(format.size.height - 1) + row_bytes) return Outcome::kDamaged;
@@ -37,10 +37,11 @@ CameraDecoder::Outcome CameraDecoder::decode_raw(const CameraFormat& format, std
   frame_->color_range = AVCOL_RANGE_MPEG;
   frame_->data[0] = reinterpret_cast<std::uint8_t*>(const_cast<char*>(bytes.data()));  // NOLINT: read only
   frame_->linesize[0] = static_cast<int>(stride);
-  return to_rgb_.convert(*frame_, into) ? Outcome::kWhole : Outcome::kDamaged;
+  into.jpeg.clear();
+  return to_rgb_.convert(*frame_, into.pixels) ? Outcome::kWhole : Outcome::kDamaged;
 }
 
-CameraDecoder::Outcome CameraDecoder::decode_jpeg(const CameraFormat& format, std::string_view bytes, Image<Rgb8>& into) {
+CameraDecoder::Outcome CameraDecoder::decode_jpeg(const CameraFormat& format, std::string_view bytes, Picture& into) {
   // A buffer may go on after the picture; one without the end mark is cut, whatever a decoder makes of it.
   const std::size_t end = bytes.rfind("\xff\xd9"sv);
   if (end == std::string_view::npos || !bytes.starts_with("\xff\xd8"sv)) return Outcome::kDamaged;
@@ -56,7 +57,8 @@ CameraDecoder::Outcome CameraDecoder::decode_jpeg(const CameraFormat& format, st
     return Outcome::kDamaged;
   }
   if (Size{frame_->width, frame_->height} != format.size) return Outcome::kOtherSize;
-  return to_rgb_.convert(*frame_, into) ? Outcome::kWhole : Outcome::kDamaged;
+  into.jpeg.assign(packet_->data, packet_->data + packet_->size);
+  return to_rgb_.convert(*frame_, into.pixels) ? Outcome::kWhole : Outcome::kDamaged;
 }
 
 }  // namespace duo

@@ -18,12 +18,13 @@ class CameraDecoder {
   static bool is_raw(std::uint32_t code) { return is_known(code) && code != fourcc_of("MJPG"); }
 
   enum class Outcome : std::uint8_t { kWhole, kDamaged, kOtherSize };
-  /// Nothing but whole pictures of the format's size come out; `into` is undefined otherwise.
-  Outcome decode(const CameraFormat& format, std::string_view bytes, Image<Rgb8>& into);
+  /// Pixels, and the JPEG where it is one. Nothing but whole pictures of the format's size come out; `into` is undefined
+  /// otherwise.
+  Outcome decode(const CameraFormat& format, std::string_view bytes, Picture& into);
 
  private:
-  Outcome decode_raw(const CameraFormat& format, std::string_view bytes, Image<Rgb8>& into);
-  Outcome decode_jpeg(const CameraFormat& format, std::string_view bytes, Image<Rgb8>& into);
+  Outcome decode_raw(const CameraFormat& format, std::string_view bytes, Picture& into);
+  Outcome decode_jpeg(const CameraFormat& format, std::string_view bytes, Picture& into);
 
   av::Decoder jpeg_;
   av::Packet packet_{av_packet_alloc()};
