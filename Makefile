@@ -1,6 +1,6 @@
 # The few commands that everybody needs. Each first installs what is missing (tools/setup; does nothing when all is there).
 # build/release has the tool, and once `make test` was called the tests; build/sanitize the tests with ASan and UBSan.
-.PHONY: build demo test bench format setup-build setup-test
+.PHONY: build demo test bench soak format setup-build setup-test
 
 build: setup-build
 	@test -f build/release/build.ninja || cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=OFF >/dev/null
@@ -14,6 +14,12 @@ test: setup-test
 
 bench: build
 	@build/release/duoptic bench
+
+# Ten minutes of live tracking: memory, latency, drops. Leave the machine alone meanwhile.
+soak: setup-test
+	@cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=ON >/dev/null
+	@cmake --build build/release --target soak_test
+	@DUOPTIC_SOAK_S=600 build/release/tests/cli/soak_test
 
 format:
 	@tools/setup format

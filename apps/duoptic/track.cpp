@@ -123,7 +123,7 @@ Result<void> first_frame(ArmRun& run, Events& events, std::int64_t number, const
 }
 
 struct Summary {
-  std::vector<double> engine_ms, tracker_ms;
+  std::vector<double> engine_ms, tracker_ms, latency_ms;  // latency: live, from capture to all sinks
   Next end = Next::kEnd;
   std::string dropped;  // by each sink that did
 };
@@ -142,6 +142,8 @@ Result<Summary> track_all(ArmRun& run, Events& events, const std::vector<ArmSele
     for (const auto& [name, sink] : sinks) DUO_TRY(sink->write(frame));
     summary.engine_ms.push_back(run.times().engine_ms);
     summary.tracker_ms.push_back(run.times().tracker_ms);
+    if (run.recording().live)
+      summary.latency_ms.push_back(clock_ms(CLOCK_MONOTONIC) - static_cast<double>(frame.left.t_ns) * 1e-6);
     progress.frame(frame.number + 1);
     if (const auto warning = run.recording().live ? skew.see(frame) : std::nullopt) say(app, "warning: " + *warning);
     DUO_TRY_ASSIGN(summary.end, next_frame(run, events));
@@ -154,7 +156,9 @@ Result<Summary> track_all(ArmRun& run, Events& events, const std::vector<ArmSele
 
 std::string text_of(const Summary& summary, double seconds, const ArmRun& run, const Options& options) {
   const std::size_t frames = summary.engine_ms.size();
-  const std::string dropped = run.recording().live ? fmt::format(", {} dropped", run.frames().dropped()) : std::string();
+  const std::string dropped =
+      run.recording().live ? fmt::format(", {} dropped, latency {:.1f} ms", run.frames().dropped(), median(summary.latency_ms))
+                           : std::string();
   return fmt::format(
       "{} frame{} of {}x{} in {:.1f} s = {:.1f} frames/s{}; engine {:.1f} ms, tracker {:.1f} ms ({}, {}, {} thread{}){}",
       frames, frames == 1 ? "" : "s", run.recording().size.width, run.recording().size.height, seconds,

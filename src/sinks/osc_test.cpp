@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstring>
 #include <map>
 #include <mutex>
 
@@ -36,14 +37,22 @@ class Receiver {
   }
 
  private:
+  template <class T>
+  static T value(const char* bytes) {
+    T out;
+    std::memcpy(&out, bytes, sizeof out);
+    return out;
+  }
   static int take(const char* path, const char* types, lo_arg** argv, int argc, lo_message, void* self) {
     Message& m = static_cast<Receiver*>(self)->messages_.emplace_back();
     m.path = path;
     m.types = types;
     for (int i = 0; i < argc; ++i) {
-      if (types[i] == 's') m.words.emplace_back(&argv[i]->s);
-      if (types[i] == 'f') m.numbers.push_back(static_cast<double>(argv[i]->f));
-      if (types[i] == 'i') m.numbers.push_back(argv[i]->i);
+      // Arguments lie on four bytes, lo_arg would want eight.
+      const char* bytes = reinterpret_cast<const char*>(argv[i]);
+      if (types[i] == 's') m.words.emplace_back(bytes);
+      if (types[i] == 'f') m.numbers.push_back(static_cast<double>(value<float>(bytes)));
+      if (types[i] == 'i') m.numbers.push_back(value<std::int32_t>(bytes));
     }
     return 0;
   }

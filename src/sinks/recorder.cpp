@@ -26,6 +26,7 @@ constexpr AVRational kNs = {1, 1'000'000'000}, kMs = {1, 1000};
 
 struct Recorder::State {
   State(std::filesystem::path to, const RecorderSetup& with, int fd) : path(std::move(to)), setup(with), file(fd) {}
+  ~State() { static_cast<void>(end()); }
 
   Result<void> begin(const Pair& first);
   Result<void> add_view(const Picture& first, const char* title);
@@ -150,9 +151,7 @@ Result<void> Recorder::State::end() {
 Recorder::Recorder(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;
-Recorder::~Recorder() {
-  if (state_) static_cast<void>(state_->end());
-}
+Recorder::~Recorder() = default;
 
 Result<Recorder> Recorder::open(const std::filesystem::path& path, const RecorderSetup& setup) {
   av_log_set_level(AV_LOG_QUIET);  // what is wrong is said in our results

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <string_view>
 #include <vector>
@@ -15,8 +14,6 @@
 #include "sources/libav.h"
 
 namespace duo {
-
-TimeNs TwoTracks::frame_ns() const { return std::atoll(tag(CaptureMark::kFrameTag).c_str()); }
 
 std::string TwoTracks::tag(const char* name) const {
   const AVDictionaryEntry* entry = av_dict_get(container->metadata, name, nullptr, 0);
@@ -61,7 +58,7 @@ constexpr AVRational kNs = {1, 1'000'000'000};
 /// True when a picture of a file of ours at `last_ns` is the last that the file had when it was finished: its length is up to
 /// where that picture ends, and a free-running right camera is half a picture off.
 bool is_last(const TwoTracks& tracks, TimeNs last_ns) {
-  return last_ns + tracks.frame_ns() * 7 / 4 > tracks.container->duration * 1000;
+  return (last_ns + tracks.frame_ns() / 4 * 7) / 1000 > tracks.container->duration;  // microseconds
 }
 
 /// Each picture has an entry in the index, which libav reads at the first search; none when it was cut off.

@@ -21,7 +21,7 @@ struct TwoTracks {
   std::vector<const AVStream*> views;  // left, right
 
   std::string tag(const char* name) const;
-  TimeNs frame_ns() const;  // from picture to picture; 0 in files that are not ours
+  TimeNs frame_ns() const { return CaptureMark::frame_ns(*container); }
   bool ours() const { return frame_ns() > 0; }
   /// A file of ours has a length once it is finished.
   bool finished() const { return container->duration > 0; }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 
@@ -101,8 +100,7 @@ Result<void> VideoFile::open(const std::filesystem::path& path, std::optional<in
   if (!decoder_)
     return Error{ErrorCode::kUnsupported,
                  fmt::format("cannot read video {}: no decoder for {}", name_, avcodec_get_name(stream().codecpar->codec_id))};
-  if (const AVDictionaryEntry* tag = av_dict_get(context->metadata, CaptureMark::kFrameTag, nullptr, 0); tag != nullptr)
-    recorded_frame_ns_ = std::atoll(tag->value);
+  recorded_frame_ns_ = CaptureMark::frame_ns(*context);
   announced_ = announced_packets();
   if (decode() != Decoded::kFrame) return unreadable(path, "no whole picture at its start");
   pending_ = true;
