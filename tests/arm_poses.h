@@ -46,10 +46,10 @@ struct Instant {
   TrackedFrame tracked(std::int64_t number) const { return {number, static_cast<double>(number) / 30, left, frame, arms, {}}; }
 };
 
-inline Recording recording_of(Side first_arm) {
-  Recording recording;
-  recording.first_arm = first_arm;
-  return recording;
+inline TrackHeader header_of(ArmSide first_arm) {
+  TrackHeader header;
+  header.first_arm = first_arm;
+  return header;
 }
 
 }  // namespace duo::test

@@ -55,16 +55,16 @@ Result<ArmRun> ArmRun::open(Input input, const ArmOptions& options, std::int64_t
   const double frame_s = input.pairs->frame_s();
   DUO_TRY(run.tracker_->prepare({rig, *run.engine_->rectified(), frame_s}));
 
-  run.recording_.sources = std::move(input.names);
-  run.recording_.engine = run.engine_->name();
-  run.recording_.matcher = options.engine.matcher;
-  run.recording_.matcher_preset = options.engine.preset;
-  run.recording_.tracker = run.tracker_->name();
-  run.recording_.tracker_preset = options.tracker_preset;
-  run.recording_.rectified = *run.engine_->rectified();
-  run.recording_.size = setup.size;
-  run.recording_.frame_s = frame_s;
-  run.recording_.live = input.pairs->live();
+  run.header_.sources = std::move(input.names);
+  run.header_.engine = run.engine_->name();
+  run.header_.matcher = options.engine.matcher;
+  run.header_.matcher_preset = options.engine.preset;
+  run.header_.tracker = run.tracker_->name();
+  run.header_.tracker_preset = options.tracker_preset;
+  run.header_.rectified = *run.engine_->rectified();
+  run.header_.size = setup.size;
+  run.header_.frame_s = frame_s;
+  run.header_.live = input.pairs->live();
   run.frames_ = std::make_unique<FrameAhead>(std::move(input.pairs), *run.engine_, first);
   return run;
 }

@@ -44,7 +44,7 @@ class ArmRun {
 
   const Rig& rig() const { return *setup_.rig; }
   FrameAhead& frames() const { return *frames_; }
-  const Recording& recording() const { return recording_; }
+  const TrackHeader& header() const { return header_; }
   /// The last pair and its frame, as sinks take them.
   TrackedFrame tracked(const std::vector<ArmPose>& arms) const;
   TrackTimes times() const { return {frames_->last().engine_ms, tracker_ms_}; }  // of the last frame
@@ -55,7 +55,7 @@ class ArmRun {
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<FrameAhead> frames_;  // after the engine, which it uses to its end
   std::unique_ptr<Tracker> tracker_;
-  Recording recording_;
+  TrackHeader header_;
   double tracker_ms_ = 0;
 };
 

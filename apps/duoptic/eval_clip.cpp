@@ -62,10 +62,10 @@ Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, con
   const std::string left = (folder / "left.avi").string(), right = (folder / "right.avi").string();
   DUO_TRY_ASSIGN(Input input, open_input(left, right, rig));
   DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(input), options, score.first));
-  const Rectified& rectified = run.recording().rectified;
+  const Rectified& rectified = run.header().rectified;
   std::unique_ptr<Sink> sink;
   if (!video.empty()) {
-    DUO_TRY_ASSIGN(sink, make_panel_video(video, run.recording(), score.note));
+    DUO_TRY_ASSIGN(sink, make_panel_video(video, run.header(), score.note));
   }
   std::array<std::vector<JointSample>, kArmJoints> samples;
   DepthTally depth;

@@ -27,8 +27,8 @@ void SinkOptions::add_to(CLI::App& app) {
       ->capture_default_str();
 }
 
-Result<std::vector<NamedSink>> SinkOptions::make(Recording recording, bool live, const CLI::App& app) const {
-  recording.first_arm = arm == "left" ? Side::kLeft : Side::kRight;
+Result<std::vector<NamedSink>> SinkOptions::make(TrackHeader header, bool live, const CLI::App& app) const {
+  header.first_arm = arm == "left" ? ArmSide::kLeft : ArmSide::kRight;
   DUO_TRY_ASSIGN(const Axes known_axes, axes_of(axes));
   std::vector<NamedSink> sinks;
   const auto add = [&](const std::string& name, Result<std::unique_ptr<Sink>> made) -> Result<void> {
@@ -39,14 +39,14 @@ Result<std::vector<NamedSink>> SinkOptions::make(Recording recording, bool live,
   };
   if (!video.empty()) {
     std::string note;
-    DUO_TRY(add(video, make_panel_video(video, recording, note)));
+    DUO_TRY(add(video, make_panel_video(video, header, note)));
     if (!note.empty()) say(app, "warning: " + note);
   }
   for (const std::string& file : csv) DUO_TRY(add(file, make_csv(file, known_axes)));
-  for (const std::string& file : bvh) DUO_TRY(add(file, make_bvh(file, recording)));
+  for (const std::string& file : bvh) DUO_TRY(add(file, make_bvh(file, header)));
   for (const std::string& target : osc) DUO_TRY(add(target, make_osc(target, known_axes)));
-  for (const std::string& target : vmc) DUO_TRY(add(target, make_vmc(target, recording)));
-  DUO_TRY(add(lines.empty() ? "stdout" : lines, make_json_lines(lines, recording)));
+  for (const std::string& target : vmc) DUO_TRY(add(target, make_vmc(target, header)));
+  DUO_TRY(add(lines.empty() ? "stdout" : lines, make_json_lines(lines, header)));
   return sinks;
 }
 

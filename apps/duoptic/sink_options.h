@@ -25,7 +25,7 @@ struct SinkOptions {
   /// All that were asked for; JSON lines last, on stdout without -o. `live`: none of them can slow the others or the tracker.
   ///
   /// Errors  those of the sinks; a sink made before leaves nothing
-  Result<std::vector<NamedSink>> make(Recording recording, bool live, const CLI::App& app) const;
+  Result<std::vector<NamedSink>> make(TrackHeader header, bool live, const CLI::App& app) const;
 };
 
 /// Each sink that dropped frames: ", 3 dropped by arm.mp4".

@@ -105,7 +105,7 @@ Result<Next> next_frame(ArmRun& run, Events& events) {
   while (true) {
     if (Interrupt::asked()) return Next::kEnd;
     DUO_TRY_ASSIGN(const Next next, run.next());
-    if (run.recording().live) events.see(run.frames().warning());
+    if (run.header().live) events.see(run.frames().warning());
     if (next != Next::kNothing) return next;
   }
 }
@@ -132,20 +132,20 @@ struct Summary {
 Result<Summary> track_all(ArmRun& run, Events& events, const std::vector<ArmSelection>& arms, const Options& options,
                           const CLI::App& app) {
   DUO_TRY(run.select(arms));
-  DUO_TRY_ASSIGN(const auto sinks, options.sinks.make(run.recording(), run.frames().live(), app));
+  DUO_TRY_ASSIGN(const auto sinks, options.sinks.make(run.header(), run.frames().live(), app));
   Summary summary;
   Progress progress(app, run.frames().count(), options.quiet);
-  SkewWatch skew(run.recording().rectified.baseline_m);
+  SkewWatch skew(run.header().rectified.baseline_m);
   while (true) {
     TrackedFrame frame = run.tracked(run.track());
     if (options.stats) frame.times = run.times();
     for (const auto& [name, sink] : sinks) DUO_TRY(sink->write(frame));
     summary.engine_ms.push_back(run.times().engine_ms);
     summary.tracker_ms.push_back(run.times().tracker_ms);
-    if (run.recording().live)
+    if (run.header().live)
       summary.latency_ms.push_back(clock_ms(CLOCK_MONOTONIC) - static_cast<double>(frame.left.t_ns) * 1e-6);
     progress.frame(frame.number + 1);
-    if (const auto warning = run.recording().live ? skew.see(frame) : std::nullopt) say(app, "warning: " + *warning);
+    if (const auto warning = run.header().live ? skew.see(frame) : std::nullopt) say(app, "warning: " + *warning);
     DUO_TRY_ASSIGN(summary.end, next_frame(run, events));
     if (summary.end != Next::kPicture) break;
   }
@@ -157,14 +157,14 @@ Result<Summary> track_all(ArmRun& run, Events& events, const std::vector<ArmSele
 std::string text_of(const Summary& summary, double seconds, const ArmRun& run, const Options& options) {
   const std::size_t frames = summary.engine_ms.size();
   const std::string dropped =
-      run.recording().live ? fmt::format(", {} dropped, latency {:.1f} ms", run.frames().dropped(), median(summary.latency_ms))
-                           : std::string();
+      run.header().live ? fmt::format(", {} dropped, latency {:.1f} ms", run.frames().dropped(), median(summary.latency_ms))
+                        : std::string();
   return fmt::format(
       "{} frame{} of {}x{} in {:.1f} s = {:.1f} frames/s{}; engine {:.1f} ms, tracker {:.1f} ms ({}, {}, {} thread{}){}",
-      frames, frames == 1 ? "" : "s", run.recording().size.width, run.recording().size.height, seconds,
+      frames, frames == 1 ? "" : "s", run.header().size.width, run.header().size.height, seconds,
       static_cast<double>(frames) / seconds, dropped, median(summary.engine_ms), median(summary.tracker_ms),
-      run.recording().engine, run.recording().tracker_preset, options.arm.engine.threads,
-      options.arm.engine.threads == 1 ? "" : "s", summary.dropped);
+      run.header().engine, run.header().tracker_preset, options.arm.engine.threads, options.arm.engine.threads == 1 ? "" : "s",
+      summary.dropped);
 }
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
@@ -178,7 +178,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   if (options.realtime && !input.pairs->live()) input.pairs = in_real_time(std::move(input.pairs));
   DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(input), options.arm, options.at_frame));
   std::optional<Interrupt> interrupt;
-  if (run.recording().live) interrupt.emplace();
+  if (run.header().live) interrupt.emplace();
   Events events(app);
   DUO_TRY(first_frame(run, events, options.at_frame, options.left));
   Result<Summary> summary = Summary{};
@@ -189,7 +189,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
     say(app, text_of(*summary, times.wall_ms / 1000, run, options));
   else if (!options.quiet && !options.sinks.lines.empty())
     fmt::print("{}\n", text_of(*summary, times.wall_ms / 1000, run, options));
-  if (const std::string warning = run.frames().warning(); !run.recording().live && !warning.empty())
+  if (const std::string warning = run.frames().warning(); !run.header().live && !warning.empty())
     say(app, "warning: " + warning);
   return summary->end == Next::kCut ? Exit::kCut : Exit::kOk;
 }

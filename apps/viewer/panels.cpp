@@ -40,8 +40,8 @@ ImVec2 inset(ImVec2 p, float d) { return {p.x + d, p.y + d}; }
 
 }  // namespace
 
-Panels::Panels(Textures& textures, const Recording& recording, float scale)
-    : textures_(textures), recording_(recording), scale_(scale) {}
+Panels::Panels(Textures& textures, const TrackHeader& header, float scale)
+    : textures_(textures), header_(header), scale_(scale) {}
 
 Result<void> Panels::show(std::shared_ptr<const Shown> shown) {
   if (shown == shown_) return {};
@@ -62,12 +62,12 @@ Result<void> Panels::show(std::shared_ptr<const Shown> shown) {
       range_ = {range_.far_px + follow * (wide.far_px - range_.far_px),
                 range_.near_px + follow * (wide.near_px - range_.near_px)};
     }
-  if (orbit_.middle_m <= 0 || shows_ == 1) orbit_.middle_m = std::max(0.3, foreground_m(d_q4, recording_.rectified));
+  if (orbit_.middle_m <= 0 || shows_ == 1) orbit_.middle_m = std::max(0.3, foreground_m(d_q4, header_.rectified));
   DUO_TRY(textures_.set(camera_, shown->left.pixels));
   if (painted_.size() != d_q4.size()) painted_ = Image<Rgb8>(d_q4.size());
   color_disparity(d_q4, range_, painted_);
   DUO_TRY(textures_.set(depth_, painted_));
-  draw_arm_region(frame, recording_.rectified, shown->arms, painted_);
+  draw_arm_region(frame, header_.rectified, shown->arms, painted_);
   DUO_TRY(textures_.set(region_, painted_));
   draw_hue(frame.color, painted_);
   DUO_TRY(textures_.set(hue_, painted_));
@@ -80,7 +80,7 @@ Result<std::optional<Clicks::Click>> Panels::draw(ImVec2 from, ImVec2 to, const 
   const float gap = 8 * scale_, half = (to.x - from.x - gap) / 2, third = (to.x - from.x - 2 * gap) / 3;
   // The upper row is as high as its pictures need, but leaves something to the lower one.
   const float high =
-      (half - 2 * kMargin * scale_) * static_cast<float>(recording_.size.height) / static_cast<float>(recording_.size.width);
+      (half - 2 * kMargin * scale_) * static_cast<float>(header_.size.height) / static_cast<float>(header_.size.width);
   const float middle_y = from.y + std::min(high + (kTitle + kCaption) * scale_, 0.62f * (to.y - from.y));
   const auto top = [&](int i) { return ImVec2(from.x + static_cast<float>(i) * (half + gap), from.y); };
   const auto bottom = [&](int i) { return ImVec2(from.x + static_cast<float>(i) * (third + gap), middle_y + gap); };
@@ -161,7 +161,7 @@ void Panels::draw_skeleton(const Fit& fit, const ArmPose& arm) const {
     const Keypoint& joint = arm.joints[j];
     if (joint.state == JointState::kLost) continue;
     const ImVec2 at = fit.place(joint.u_px, joint.v_px);
-    const double px_per_m = fit.scale * recording_.rectified.focal_px / std::max(joint.p_in_rig_m.z, 0.1);
+    const double px_per_m = fit.scale * header_.rectified.focal_px / std::max(joint.p_in_rig_m.z, 0.1);
     const auto half = static_cast<float>(std::clamp(kBoxHalf_m * px_per_m, 5.0, 80.0));
     const auto ring = static_cast<float>(std::clamp(joint.sigma_m * px_per_m, 3.0, 2000.0));
     const ImVec2 corners[] = {
@@ -216,7 +216,7 @@ void Panels::draw_depth(const Cell& cell) {
   const std::uint16_t d = d_q4.at(y, x);
   std::string text = "no depth";
   if (d != Disparity::kNone && d != 0) {
-    const Rectified& r = recording_.rectified;
+    const Rectified& r = header_.rectified;
     const double per_px_m = r.baseline_m * 16 / d;
     text = fmt::format("{:.2f} m   x {:+.2f}  y {:+.2f}", r.focal_px * per_px_m, (x - r.cx_px) * per_px_m,
                        (y - r.cy_px) * per_px_m);
@@ -234,7 +234,7 @@ void Panels::put_depth_legend(const Cell& cell) {
   const ImVec2 to = {cell.caption.x + cell.caption_width, cell.caption.y + 10 * scale_};
   if (range_.empty()) return list.AddText(cell.caption, kFaint, "no depth");
   textures_.draw(list, turbo_strip_, cell.caption, to);
-  const Rectified& r = recording_.rectified;
+  const Rectified& r = header_.rectified;
   std::vector<std::pair<float, float>> taken;
   for (const double z_m :
        {1.0, 2.0, 0.5, 5.0, 3.0, 1.5, 10.0, 0.7, 4.0, 2.5, 0.3, 0.4, 0.6, 0.8, 1.2, 7.0, 0.9, 6.0, 3.5, 1.4, 1.8, 20.0}) {
@@ -265,7 +265,7 @@ void Panels::turn_cloud(const Cell& cell) {
   if (!ImGui::IsItemHovered()) return;
   orbit_.zoom = std::clamp(orbit_.zoom * std::pow(1.15, io.MouseWheel), 0.3, 6.0);
   if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
-    orbit_ = {.middle_m = std::max(0.3, foreground_m(shown_->frame.disparity.d_q4, recording_.rectified))};
+    orbit_ = {.middle_m = std::max(0.3, foreground_m(shown_->frame.disparity.d_q4, header_.rectified))};
 }
 
 Result<void> Panels::draw_cloud_panel(const Cell& cell) {
@@ -275,12 +275,12 @@ Result<void> Panels::draw_cloud_panel(const Cell& cell) {
   Cell tall = cell;
   tall.to.y += (kCaption - kMargin) * scale_;  // no caption
   turn_cloud(tall);
-  const OrbitCamera camera(orbit_, recording_.rectified, size);
+  const OrbitCamera camera(orbit_, header_.rectified, size);
   const bool turned = orbit_.yaw_rad != drawn_orbit_.yaw_rad || orbit_.pitch_rad != drawn_orbit_.pitch_rad ||
                       orbit_.zoom != drawn_orbit_.zoom || orbit_.middle_m != drawn_orbit_.middle_m;
   if (cloud_stale_ || turned || points_.size() != size) {
     if (points_.size() != size) points_ = Image<Rgb8>(size);
-    draw_points(shown_->frame.disparity.d_q4, shown_->frame.color, recording_.rectified, camera, points_);
+    draw_points(shown_->frame.disparity.d_q4, shown_->frame.color, header_.rectified, camera, points_);
     DUO_TRY(textures_.set(cloud_, points_));
     drawn_orbit_ = orbit_;
     cloud_stale_ = false;

@@ -15,7 +15,7 @@ namespace duo::app::view {
 /// Draws what is shown; gives back where the camera's picture was clicked.
 class Panels {
  public:
-  Panels(Textures& textures, const Recording& recording, float scale);
+  Panels(Textures& textures, const TrackHeader& header, float scale);
 
   /// The next draw() shows this.
   Result<void> show(std::shared_ptr<const Shown> shown);
@@ -51,7 +51,7 @@ class Panels {
   void draw_hue_panel(const Cell& cell);
 
   Textures& textures_;
-  const Recording recording_;
+  const TrackHeader header_;
   float scale_;
   std::shared_ptr<const Shown> shown_;
   int shows_ = 0;

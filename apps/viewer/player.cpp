@@ -43,15 +43,15 @@ double now_ms() { return clock_ms(CLOCK_MONOTONIC); }
 Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options) {
   std::unique_ptr<Player> player(new Player(options));
   DUO_TRY_ASSIGN(ArmRun run, open_run(options));
-  player->recording_ = run.recording();
+  player->header_ = run.header();
   player->rig_ = run.rig();
-  player->skew_ = SkewWatch(run.recording().rectified.baseline_m);
-  player->live_ = run.recording().live;
+  player->skew_ = SkewWatch(run.header().rectified.baseline_m);
+  player->live_ = run.header().live;
   player->still_ = run.frames().still();
   player->count_ = run.frames().count();
   player->status_.loop = options.loop;
   if (!options.lines.empty()) {
-    DUO_TRY_ASSIGN(player->lines_, make_json_lines(options.lines, run.recording()));
+    DUO_TRY_ASSIGN(player->lines_, make_json_lines(options.lines, run.header()));
   }
   player->run_.emplace(std::move(run));
   player->thread_ = std::thread([p = player.get()] { p->run(); });
@@ -249,7 +249,7 @@ void Player::advance() {
   const double interval = last_ms_ > 0 ? now - last_ms_ : 0;
   last_ms_ = now;
   // Late frames shift all that follow: none is left out, and none is hurried.
-  next_ms_ = std::max(next_ms_, now - 1000 * recording_.frame_s) + 1000 * recording_.frame_s;
+  next_ms_ = std::max(next_ms_, now - 1000 * header_.frame_s) + 1000 * header_.frame_s;
 
   const auto number = static_cast<std::int64_t>(run_->frames().last().pair.sequence);
   if (!live_ && selected_ && selected_->first == number) (void)run_->select(selected_->second);
@@ -288,7 +288,7 @@ bool Player::reopen() {
   }
   run_.emplace(std::move(*run));
   passed_ += frames;
-  passed_s_ += static_cast<double>(frames) * recording_.frame_s;
+  passed_s_ += static_cast<double>(frames) * header_.frame_s;
   has_frame_ = false;
   arms_.clear();
   return true;

@@ -63,7 +63,7 @@ class Player {
   static Result<std::unique_ptr<Player>> open(const PlayerOptions& options);
   ~Player();
 
-  const Recording& recording() const { return recording_; }
+  const TrackHeader& header() const { return header_; }
   const Rig& rig() const { return rig_; }
   bool live() const { return live_; }
   std::int64_t count() const { return count_; }  // pairs; 0: not known
@@ -102,7 +102,7 @@ class Player {
   bool resting() const;
 
   PlayerOptions options_;
-  Recording recording_;
+  TrackHeader header_;
   Rig rig_;
   bool live_ = false, still_ = false;
   std::int64_t count_ = 0;

@@ -251,14 +251,14 @@ void Sidebar::put_parameters(Player& player) {
 
 void Sidebar::put_source(Player& player, const PlayerStatus& status) const {
   if (!ImGui::CollapsingHeader("Source and rig", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  const Recording& recording = player.recording();
+  const TrackHeader& header = player.header();
   const Rig& rig = player.rig();
   colored(kText, source_);
-  fact("pictures", fmt::format("{}x{}, {:.0f} a second, {}", recording.size.width, recording.size.height, 1 / recording.frame_s,
+  fact("pictures", fmt::format("{}x{}, {:.0f} a second, {}", header.size.width, header.size.height, 1 / header.frame_s,
                                player.live() ? "live" : "from files"));
   fact("focal lengths", fmt::format("{:.1f} and {:.1f} px", rig.left.fx_px, rig.right.fx_px));
   fact("baseline", fmt::format("{:.1f} mm{}", 1000 * rig.baseline_m(), rig.metric ? "" : ", a guess"));
-  fact("engine", recording.engine);
+  fact("engine", header.engine);
   fact("window", device_);
   for (const RigDoubt& doubt : doubts_) colored(color_of_verdict(doubt.verdict), doubt.what);
   if (status.checking_rig)

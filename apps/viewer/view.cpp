@@ -49,7 +49,7 @@ class Viewer {
       : options_(options),
         window_(window),
         player_(player),
-        panels_(window.textures(), player.recording(), window.scale()),
+        panels_(window.textures(), player.header(), window.scale()),
         sidebar_(std::move(sidebar)) {}
 
   /// Until the window is closed.

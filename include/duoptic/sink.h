@@ -71,17 +71,17 @@ Result<void> write_ply(View<const std::uint16_t> d_q4, View<const Rgb8> color, c
 Image<Rgb8> draw_cloud(View<const std::uint16_t> d_q4, View<const Rgb8> color, const Rectified& rectified, Size size);
 
 /// Which arm of the person, as the person says it.
-enum class Side : std::uint8_t { kRight, kLeft };
+enum class ArmSide : std::uint8_t { kRight, kLeft };
 
-/// What is known of a recording before its first frame.
-struct Recording {
+/// What sinks are told before the first frame.
+struct TrackHeader {
   std::vector<std::string> sources;  // as the user named them, left first
   std::string engine, matcher, matcher_preset, tracker, tracker_preset;
   Rectified rectified;
   Size size;  // of the raw left picture
   double frame_s = 1.0 / 30;
-  bool live = false;              // from cameras: what differs from run to run is told, too
-  Side first_arm = Side::kRight;  // of TrackedFrame::arms; a second arm is the other one
+  bool live = false;                    // from cameras: what differs from run to run is told, too
+  ArmSide first_arm = ArmSide::kRight;  // of TrackedFrame::arms; a second arm is the other one
 };
 
 struct TrackTimes {
@@ -116,14 +116,13 @@ class Sink {
 /// JSON lines: a header, then a line a frame (see docs/json_lines.md). An empty `path` is stdout.
 ///
 /// Errors  those of every written file
-Result<std::unique_ptr<Sink>> make_json_lines(const std::filesystem::path& path, const Recording& recording);
+Result<std::unique_ptr<Sink>> make_json_lines(const std::filesystem::path& path, const TrackHeader& header);
 
 /// The four panels as H.264 in MP4, 4:2:0, which plays everywhere; MPEG-4 part 2 where this machine's libav has no H.264
 /// encoder, which `note` then says.
 ///
 /// Errors  those of every written file; no encoder at all
-Result<std::unique_ptr<Sink>> make_panel_video(const std::filesystem::path& path, const Recording& recording,
-                                               std::string& note);
+Result<std::unique_ptr<Sink>> make_panel_video(const std::filesystem::path& path, const TrackHeader& header, std::string& note);
 
 /// A row a frame and arm, see docs/formats.md.
 ///
@@ -135,7 +134,7 @@ Result<std::unique_ptr<Sink>> make_csv(const std::filesystem::path& path, Axes a
 /// arm and frame.
 ///
 /// Errors  those of every written file
-Result<std::unique_ptr<Sink>> make_bvh(const std::filesystem::path& path, const Recording& recording);
+Result<std::unique_ptr<Sink>> make_bvh(const std::filesystem::path& path, const TrackHeader& header);
 
 /// Sends a bundle of OSC messages a frame by UDP to `target`, "host:port"; nothing listens and nothing waits: what the network
 /// does not take at once is dropped. See docs/formats.md for the addresses.
@@ -144,7 +143,7 @@ Result<std::unique_ptr<Sink>> make_bvh(const std::filesystem::path& path, const 
 Result<std::unique_ptr<Sink>> make_osc(const std::string& target, Axes axes);
 
 /// The same with the Virtual Motion Capture protocol: bones of a humanoid avatar as rotations from its T-pose.
-Result<std::unique_ptr<Sink>> make_vmc(const std::string& target, const Recording& recording);
+Result<std::unique_ptr<Sink>> make_vmc(const std::string& target, const TrackHeader& header);
 
 /// `sink` behind a thread and a place for one frame, for live sources: write() copies what the sink wants and returns; a frame
 /// that comes before the last one was taken replaces it, and dropped() counts. Errors of `sink` come with the next call.
@@ -153,6 +152,6 @@ std::unique_ptr<Sink> in_background(std::unique_ptr<Sink> sink);
 /// The thesis's four panels: the raw left picture with joints as green boxes and bones as red lines, both broken where a joint
 /// is inferred; depth in colours over `range`, with a legend in metres; the arm's pixels in three shades, one a joint; hue as
 /// colour with saturation as brightness. The same size for every frame of a recording, even in both directions.
-Image<Rgb8> draw_panels(const TrackedFrame& frame, const Recording& recording, const DisparityRange& range);
+Image<Rgb8> draw_panels(const TrackedFrame& frame, const TrackHeader& header, const DisparityRange& range);
 
 }  // namespace duo

@@ -20,10 +20,12 @@ Mat3 turn_to(double x, Vec3 bone, Vec3 hinge) { return transposed(Mat3::from_row
 }  // namespace
 
 // Who looks along z with y up has the left hand at +x when the axes are right-handed, at -x when they are left-handed.
-double rest_x(Side side, bool left_handed) { return (side == Side::kLeft) != left_handed ? 1 : -1; }
+double rest_x(ArmSide side, bool left_handed) { return (side == ArmSide::kLeft) != left_handed ? 1 : -1; }
 
-Side side_of(Side first, std::size_t arm) { return arm % 2 == 0 ? first : first == Side::kRight ? Side::kLeft : Side::kRight; }
-std::string_view side_name(Side side) { return side == Side::kLeft ? "Left" : "Right"; }
+ArmSide side_of(ArmSide first, std::size_t arm) {
+  return arm % 2 == 0 ? first : first == ArmSide::kRight ? ArmSide::kLeft : ArmSide::kRight;
+}
+std::string_view side_name(ArmSide side) { return side == ArmSide::kLeft ? "Left" : "Right"; }
 
 std::optional<BoneTurns> ArmTurner::turn(Vec3 shoulder, Vec3 elbow, Vec3 hand) {
   constexpr double kShortest = 1e-6;

@@ -11,11 +11,11 @@
 namespace duo {
 
 /// Axes of a person who stands in a T-pose and looks along z, y up: how far the arm's rest points along x. +1 or -1.
-double rest_x(Side side, bool left_handed);
+double rest_x(ArmSide side, bool left_handed);
 
 /// The side of arm number `arm` of a recording.
-Side side_of(Side first, std::size_t arm);
-std::string_view side_name(Side side);  // "Left", "Right"
+ArmSide side_of(ArmSide first, std::size_t arm);
+std::string_view side_name(ArmSide side);  // "Left", "Right"
 
 /// Turns of both bones, in the parent's axes; a bone at rest points along (rest_x, 0, 0), and its elbow bends towards +z.
 struct BoneTurns {

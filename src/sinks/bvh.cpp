@@ -45,7 +45,7 @@ std::string channels(const Mat3& rotation) {
 /// One arm through all frames.
 class Track {
  public:
-  explicit Track(Side side) : side_(side) {}
+  explicit Track(ArmSide side) : side_(side) {}
   /// Frame `slot`; those that were left out hold the one before, as those do in which a joint is lost.
   void add(std::size_t slot, const KnownArm& arm) {
     frames_.resize(std::max(frames_.size(), slot + 1));
@@ -58,7 +58,7 @@ class Track {
  private:
   double median_length_m(Joint from, Joint to, double otherwise_m) const;
 
-  Side side_;
+  ArmSide side_;
   std::vector<KnownArm> frames_;
 };
 
@@ -112,8 +112,8 @@ std::vector<std::string> Track::motion(std::size_t count) const {
 
 class Bvh final : public Sink {
  public:
-  Bvh(PartialFile file, const Recording& recording)
-      : file_(std::move(file)), first_arm_(recording.first_arm), frame_s_(recording.frame_s) {}
+  Bvh(PartialFile file, const TrackHeader& header)
+      : file_(std::move(file)), first_arm_(header.first_arm), frame_s_(header.frame_s) {}
 
   Result<void> write(const TrackedFrame& frame) override {
     if (tracks_.empty()) start_s_ = frame.t_s;
@@ -140,7 +140,7 @@ class Bvh final : public Sink {
 
  private:
   PartialFile file_;
-  Side first_arm_;
+  ArmSide first_arm_;
   double frame_s_, start_s_ = 0;
   std::vector<Track> tracks_;
   std::size_t count_ = 0;
@@ -148,9 +148,9 @@ class Bvh final : public Sink {
 
 }  // namespace
 
-Result<std::unique_ptr<Sink>> make_bvh(const std::filesystem::path& path, const Recording& recording) {
+Result<std::unique_ptr<Sink>> make_bvh(const std::filesystem::path& path, const TrackHeader& header) {
   DUO_TRY_ASSIGN(PartialFile file, PartialFile::open(path));
-  return std::unique_ptr<Sink>(std::make_unique<Bvh>(std::move(file), recording));
+  return std::unique_ptr<Sink>(std::make_unique<Bvh>(std::move(file), header));
 }
 
 }  // namespace duo

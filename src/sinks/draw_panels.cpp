@@ -91,10 +91,10 @@ void broken_line(cv::Mat& rgb, cv::Point2d a, cv::Point2d b, const cv::Scalar& c
 /// The skeleton over the raw left picture.
 class Skeleton {
  public:
-  Skeleton(View<Rgb8> dst, const Recording& recording, const Layout& layout)
+  Skeleton(View<Rgb8> dst, const TrackHeader& header, const Layout& layout)
       : rgb_(mat_of(dst)),
-        scale_(static_cast<double>(dst.width()) / recording.size.width),
-        focal_px_(recording.rectified.focal_px * scale_),
+        scale_(static_cast<double>(dst.width()) / header.size.width),
+        focal_px_(header.rectified.focal_px * scale_),
         thick_(layout.scaled(4)),
         dash_px_(layout.scaled(8)) {}
 
@@ -169,17 +169,17 @@ void put_hues(View<Rgb8> dst, const Layout& layout) {
 
 }  // namespace
 
-Size panels_size(const Recording& recording) { return Layout(recording.size).whole(); }
+Size panels_size(const TrackHeader& header) { return Layout(header.size).whole(); }
 
-Image<Rgb8> draw_panels(const TrackedFrame& frame, const Recording& recording, const DisparityRange& range) {
-  DUO_CHECK(frame.left.pixels.size() == recording.size && frame.frame.color.size() == frame.frame.disparity.d_q4.size());
-  const Layout layout(recording.size);
+Image<Rgb8> draw_panels(const TrackedFrame& frame, const TrackHeader& header, const DisparityRange& range) {
+  DUO_CHECK(frame.left.pixels.size() == header.size && frame.frame.color.size() == frame.frame.disparity.d_q4.size());
+  const Layout layout(header.size);
   Image<Rgb8> out(layout.whole());
   for (int y = 0; y < out.height(); ++y) std::fill_n(out.row(y), out.width(), kGround);
   const Cell camera(out, layout, 0, 0), depth(out, layout, 0, 1), region(out, layout, 1, 0), hue(out, layout, 1, 1);
 
   fit(frame.left.pixels.clone(), camera.picture);
-  Skeleton skeleton(camera.picture, recording, layout);
+  Skeleton skeleton(camera.picture, header, layout);
   for (const ArmPose& arm : frame.arms) skeleton.draw(arm);
   put_title(camera, layout, "left camera: joints and bones", fmt::format("frame {}   {:.2f} s", frame.number, frame.t_s));
   put_joints(camera.caption, frame.arms, layout);
@@ -188,9 +188,9 @@ Image<Rgb8> draw_panels(const TrackedFrame& frame, const Recording& recording, c
   color_disparity(frame.frame.disparity.d_q4, range, drawn);
   fit(drawn, depth.picture);
   put_title(depth, layout, "depth", "metres");
-  draw_legend(depth.caption, range, &recording.rectified);
+  draw_legend(depth.caption, range, &header.rectified);
 
-  draw_arm_region(frame.frame, recording.rectified, frame.arms, drawn);
+  draw_arm_region(frame.frame, header.rectified, frame.arms, drawn);
   fit(drawn, region.picture);
   put_title(region, layout, "arm region", "by nearest joint");
   put_shades(region.caption, layout);

@@ -27,7 +27,7 @@ target_sources(duoptic PRIVATE
   ${dir}/video_writer.cpp
   ${dir}/vmc.cpp)
 duoptic_test(sinks/files ${dir}/files_test.cpp)
-duoptic_test(sinks/recording ${dir}/recording_test.cpp)
+duoptic_test(sinks/tracked_frames ${dir}/tracked_frames_test.cpp)
 duoptic_test(sinks/other_programs ${dir}/motion_files_test.cpp)
 duoptic_test(sinks/recorder ${dir}/recorder_test.cpp)
 if(DUO_TESTS)

@@ -25,7 +25,7 @@ double since_ms(TimeNs t_ns) {
   return static_cast<double>(std::chrono::nanoseconds(now).count() - t_ns) * 1e-6;
 }
 
-std::string header_line(const Recording& r) {
+std::string header_line(const TrackHeader& r) {
   std::vector<std::string> rotation, sources;
   for (const double m : r.rectified.rig_from_left.m) rotation.push_back(number(m, 9));
   for (const std::string& source : r.sources) sources.push_back(quoted(source));
@@ -68,7 +68,7 @@ std::string frame_line(const TrackedFrame& frame, bool live) {
 class ToFile final : public Sink {
  public:
   ToFile(PartialFile file, bool live) : file_(std::move(file)), live_(live) {}
-  Result<void> begin(const Recording& recording) { return file_.write(header_line(recording)); }
+  Result<void> begin(const TrackHeader& header) { return file_.write(header_line(header)); }
   Result<void> write(const TrackedFrame& frame) override { return file_.write(frame_line(frame, live_)); }
   Result<void> finish() override { return file_.publish(); }
 
@@ -80,7 +80,7 @@ class ToFile final : public Sink {
 class ToStdout final : public Sink {
  public:
   explicit ToStdout(bool live) : live_(live) {}
-  Result<void> begin(const Recording& recording) { return print(header_line(recording)); }
+  Result<void> begin(const TrackHeader& header) { return print(header_line(header)); }
   Result<void> write(const TrackedFrame& frame) override { return print(frame_line(frame, live_)); }
   Result<void> finish() override { return {}; }
 
@@ -95,17 +95,17 @@ class ToStdout final : public Sink {
 };
 
 template <class T>
-Result<std::unique_ptr<Sink>> begun(std::unique_ptr<T> sink, const Recording& recording) {
-  DUO_TRY(sink->begin(recording));
+Result<std::unique_ptr<Sink>> begun(std::unique_ptr<T> sink, const TrackHeader& header) {
+  DUO_TRY(sink->begin(header));
   return std::unique_ptr<Sink>(std::move(sink));
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Sink>> make_json_lines(const std::filesystem::path& path, const Recording& recording) {
-  if (path.empty()) return begun(std::make_unique<ToStdout>(recording.live), recording);
+Result<std::unique_ptr<Sink>> make_json_lines(const std::filesystem::path& path, const TrackHeader& header) {
+  if (path.empty()) return begun(std::make_unique<ToStdout>(header.live), header);
   DUO_TRY_ASSIGN(PartialFile file, PartialFile::open(path));
-  return begun(std::make_unique<ToFile>(std::move(file), recording.live), recording);
+  return begun(std::make_unique<ToFile>(std::move(file), header.live), header);
 }
 
 }  // namespace duo

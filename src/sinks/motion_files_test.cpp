@@ -146,7 +146,7 @@ TEST(Bvh, ForwardKinematicsGivesTheJointsBack) {
   const test::TempFolder folder;
   constexpr int kFrames = 200;
   const auto right = wandering_arm(kFrames, 1), left = wandering_arm(kFrames, 2);
-  auto sink = make_bvh(folder / "arms.bvh", recording_of(Side::kRight));
+  auto sink = make_bvh(folder / "arms.bvh", header_of(ArmSide::kRight));
   ASSERT_TRUE(sink) << sink.error().what;
   Instant instant;
   for (std::size_t i = 0; i < kFrames; ++i) {
@@ -179,7 +179,7 @@ TEST(Bvh, ForwardKinematicsGivesTheJointsBack) {
 TEST(Bvh, LostAndLeftOutFramesHoldTheLastPose) {
   const test::TempFolder folder;
   auto poses = wandering_arm(3, 3);
-  auto sink = make_bvh(folder / "arm.bvh", recording_of(Side::kLeft));
+  auto sink = make_bvh(folder / "arm.bvh", header_of(ArmSide::kLeft));
   ASSERT_TRUE(sink);
   Instant instant;
   const auto write = [&](std::int64_t number, ArmPose pose) {
@@ -202,7 +202,7 @@ TEST(Bvh, LostAndLeftOutFramesHoldTheLastPose) {
 
 TEST(Bvh, NothingKnownIsStillAFile) {
   const test::TempFolder folder;
-  auto sink = make_bvh(folder / "arm.bvh", recording_of(Side::kLeft));
+  auto sink = make_bvh(folder / "arm.bvh", header_of(ArmSide::kLeft));
   ASSERT_TRUE(sink);
   ASSERT_TRUE((*sink)->write(Instant{}.tracked(0)));
   ASSERT_TRUE((*sink)->finish());

@@ -93,13 +93,13 @@ Vec3 turned(const std::vector<double>& n, Vec3 v) {
 }
 
 TEST(Vmc, ARealReceiverGetsTheBones) {
-  for (const Side side : {Side::kRight, Side::kLeft}) {
+  for (const ArmSide side : {ArmSide::kRight, ArmSide::kLeft}) {
     SCOPED_TRACE(side_name(side));
     Receiver receiver;
-    auto sink = make_vmc(receiver.target(), recording_of(side));
+    auto sink = make_vmc(receiver.target(), header_of(side));
     ASSERT_TRUE(sink) << sink.error().what;
     const std::string name(side_name(side));
-    const Vec3 rest{side == Side::kLeft ? -1.0 : 1.0, 0, 0};  // Unity: the avatar looks along z, its left is -x
+    const Vec3 rest{side == ArmSide::kLeft ? -1.0 : 1.0, 0, 0};  // Unity: the avatar looks along z, its left is -x
     int number = 0;
     for (const ArmPose& arm : wandering_arm(100, 4)) {
       Instant instant;
@@ -135,7 +135,7 @@ TEST(Vmc, ARealReceiverGetsTheBones) {
 /// By hand: a right arm stretched out sideways with the forearm to the front is a T-pose but for the elbow's quarter turn.
 TEST(Vmc, ElbowBendsAroundItsHinge) {
   Receiver receiver;
-  auto sink = make_vmc(receiver.target(), recording_of(Side::kRight));
+  auto sink = make_vmc(receiver.target(), header_of(ArmSide::kRight));
   ASSERT_TRUE(sink);
   Instant instant;
   // The person looks at the camera: the right arm goes to the picture's left, the front is where z is less.

@@ -12,7 +12,7 @@ namespace {
 
 class PanelVideo final : public Sink {
  public:
-  PanelVideo(VideoWriter video, Recording recording) : video_(std::move(video)), recording_(std::move(recording)) {}
+  PanelVideo(VideoWriter video, TrackHeader header) : video_(std::move(video)), header_(std::move(header)) {}
 
   Result<void> write(const TrackedFrame& frame) override {
     if (range_.empty()) {
@@ -22,24 +22,24 @@ class PanelVideo final : public Sink {
       range_ = disparity_range(frame.frame.disparity.d_q4);
       range_ = {std::max(range_.far_px, range_.near_px / kFarther), range_.near_px * kNearer};
     }
-    return video_.write(draw_panels(frame, recording_, range_));
+    return video_.write(draw_panels(frame, header_, range_));
   }
   bool wants_pictures() const override { return true; }
   Result<void> finish() override { return video_.finish(); }
 
  private:
   VideoWriter video_;
-  Recording recording_;
+  TrackHeader header_;
   DisparityRange range_;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<Sink>> make_panel_video(const std::filesystem::path& path, const Recording& recording,
+Result<std::unique_ptr<Sink>> make_panel_video(const std::filesystem::path& path, const TrackHeader& header,
                                                std::string& note) {
-  DUO_TRY_ASSIGN(VideoWriter video, VideoWriter::open(path, panels_size(recording), recording.frame_s));
+  DUO_TRY_ASSIGN(VideoWriter video, VideoWriter::open(path, panels_size(header), header.frame_s));
   if (!video.is_h264()) note = fmt::format("libav has no H.264 encoder here (libx264); {} is MPEG-4 part 2", path.string());
-  return std::unique_ptr<Sink>(std::make_unique<PanelVideo>(std::move(video), recording));
+  return std::unique_ptr<Sink>(std::make_unique<PanelVideo>(std::move(video), header));
 }
 
 }  // namespace duo

@@ -6,7 +6,7 @@
 namespace duo {
 
 /// Of draw_panels(): whatever the frame.
-Size panels_size(const Recording& recording);
+Size panels_size(const TrackHeader& header);
 
 /// The colour of a hue at full saturation.
 ///

@@ -16,7 +16,7 @@ Vec3 avatar_from_rig(Vec3 p_in_rig) { return -1.0 * p_in_rig; }
 
 class Vmc final : public Sink {
  public:
-  Vmc(OscTarget target, Side first_arm) : target_(std::move(target)), first_arm_(first_arm) {}
+  Vmc(OscTarget target, ArmSide first_arm) : target_(std::move(target)), first_arm_(first_arm) {}
 
   Result<void> write(const TrackedFrame& frame) override {
     const OscBundle bundle = new_bundle();
@@ -56,7 +56,7 @@ class Vmc final : public Sink {
     lo_bundle_add_message(bundle.get(), path, message);
   }
 
-  static void add_arm(const OscBundle& bundle, const ArmPose& arm, Side side, ArmTurner& turner) {
+  static void add_arm(const OscBundle& bundle, const ArmPose& arm, ArmSide side, ArmTurner& turner) {
     const Vec3 shoulder = avatar_from_rig(arm[Joint::kShoulder].p_in_rig_m),
                elbow = avatar_from_rig(arm[Joint::kElbow].p_in_rig_m), hand = avatar_from_rig(arm[Joint::kHand].p_in_rig_m);
     const auto turns = turner.turn(shoulder, elbow, hand);
@@ -73,15 +73,15 @@ class Vmc final : public Sink {
   }
 
   OscTarget target_;
-  Side first_arm_;
+  ArmSide first_arm_;
   std::vector<ArmTurner> turners_;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<Sink>> make_vmc(const std::string& target, const Recording& recording) {
+Result<std::unique_ptr<Sink>> make_vmc(const std::string& target, const TrackHeader& header) {
   DUO_TRY_ASSIGN(OscTarget opened, OscTarget::open(target));
-  return std::unique_ptr<Sink>(std::make_unique<Vmc>(std::move(opened), recording.first_arm));
+  return std::unique_ptr<Sink>(std::make_unique<Vmc>(std::move(opened), header.first_arm));
 }
 
 }  // namespace duo

@@ -16,8 +16,8 @@ namespace {
 
 using test::bytes_of;
 
-Recording recording_of(Size size) {
-  Recording r;
+TrackHeader header_of(Size size) {
+  TrackHeader r;
   r.sources = {"left.avi", "odd \"name\"\xFF.avi"};
   r.engine = "simd";
   r.matcher = "pyramid";
@@ -69,7 +69,7 @@ constexpr char kJoints[] =
 TEST(JsonLines, BytesByHand) {
   const test::TempFolder folder;
   const Instant instant({64, 48});
-  auto sink = make_json_lines(folder / "arm.jsonl", recording_of({64, 48}));
+  auto sink = make_json_lines(folder / "arm.jsonl", header_of({64, 48}));
   ASSERT_TRUE(sink) << sink.error().what;
   ASSERT_TRUE((*sink)->write(instant.tracked(57)));
   TrackedFrame timed = instant.tracked(58);
@@ -87,7 +87,7 @@ TEST(JsonLines, BytesByHand) {
 TEST(JsonLines, SecondArmAndNoArm) {
   const test::TempFolder folder;
   Instant instant({64, 48});
-  auto sink = make_json_lines(folder / "arm.jsonl", recording_of({64, 48}));
+  auto sink = make_json_lines(folder / "arm.jsonl", header_of({64, 48}));
   ASSERT_TRUE(sink);
   instant.arms.push_back(instant.arms[0]);
   ASSERT_TRUE((*sink)->write(instant.tracked(0)));
@@ -104,12 +104,12 @@ TEST(JsonLines, AbandonedLeavesNothing) {
   const test::TempFolder folder;
   const Instant instant({64, 48});
   {
-    auto sink = make_json_lines(folder / "arm.jsonl", recording_of({64, 48}));
+    auto sink = make_json_lines(folder / "arm.jsonl", header_of({64, 48}));
     ASSERT_TRUE(sink);
     ASSERT_TRUE((*sink)->write(instant.tracked(0)));
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
-  const auto nowhere = make_json_lines(folder / "none" / "arm.jsonl", recording_of({64, 48}));
+  const auto nowhere = make_json_lines(folder / "none" / "arm.jsonl", header_of({64, 48}));
   ASSERT_FALSE(nowhere);
   EXPECT_NE(nowhere.error().what.find("make the folder first"), std::string::npos) << nowhere.error().what;
 }
@@ -180,12 +180,12 @@ TEST(VideoWriter, FailuresLeaveNothing) {
 TEST(Panels, JointsAndBonesWhereTheyAre) {
   constexpr Size kSize = {320, 240};
   Instant instant(kSize);
-  const Recording recording = recording_of(kSize);
+  const TrackHeader header = header_of(kSize);
   instant.arms[0][Joint::kHand] = {{0, 0, 2}, 0.01, 1, 80, 120, JointState::kSeen};
   instant.arms[0][Joint::kElbow] = {{0.2, 0, 2}, 0.01, 1, 240, 120, JointState::kSeen};
-  const auto draw = [&] { return draw_panels(instant.tracked(3), recording, {10, 60}); };
+  const auto draw = [&] { return draw_panels(instant.tracked(3), header, {10, 60}); };
   const Image<Rgb8> seen = draw();
-  EXPECT_EQ(seen.size(), panels_size(recording));
+  EXPECT_EQ(seen.size(), panels_size(header));
   EXPECT_EQ(seen.width() % 2 + seen.height() % 2, 0);
   const int top = 14;  // the title of a picture half as wide as the widest
   const auto count = [&](const Image<Rgb8>& picture, auto&& like) {
@@ -211,12 +211,12 @@ TEST(Panels, JointsAndBonesWhereTheyAre) {
 TEST(Panels, RegionInTheShadeOfTheNearestJoint) {
   constexpr Size kSize = {320, 240};
   Instant instant(kSize);
-  const Recording recording = recording_of(kSize);
+  const TrackHeader header = header_of(kSize);
   // The wall at 2 m: x_m = (x - 160) / 250. Hand at the centre, elbow 0.3 m to its right, shoulder lost.
   instant.arms[0][Joint::kHand] = {{0, 0, 2}, 0.01, 1, 0, 0, JointState::kSeen};
   instant.arms[0][Joint::kElbow] = {{0.3, 0, 2}, 0.01, 1, 0, 0, JointState::kSeen};
   Image<Rgb8> drawn(kSize);
-  draw_arm_region(instant.frame, recording.rectified, instant.arms, drawn);
+  draw_arm_region(instant.frame, header.rectified, instant.arms, drawn);
   const Rgb8 hand = drawn.at(120, 165), elbow = drawn.at(120, 230), wall = drawn.at(30, 165);
   EXPECT_EQ(drawn.at(120, 190), hand);   // 0.12 m along
   EXPECT_EQ(drawn.at(120, 205), elbow);  // 0.18 m
@@ -245,12 +245,12 @@ TEST(Panels, WhateverTheSizes) {
   for (const Size raw : {Size{1, 1}, Size{3, 5}, Size{161, 90}, Size{1280, 720}, Size{720, 1280}})
     for (const Size map : {Size{1, 1}, Size{40, 90}, Size{700, 500}}) {
       Instant instant(map);
-      Recording recording = recording_of(map);
-      recording.size = raw;
+      TrackHeader header = header_of(map);
+      header.size = raw;
       instant.left.pixels = Image<Rgb8>(raw);
-      EXPECT_EQ(draw_panels(instant.tracked(0), recording, {}).size(), panels_size(recording));
-      EXPECT_EQ(panels_size(recording).width % 2, 0);
-      EXPECT_EQ(panels_size(recording).height % 2, 0);
+      EXPECT_EQ(draw_panels(instant.tracked(0), header, {}).size(), panels_size(header));
+      EXPECT_EQ(panels_size(header).width % 2, 0);
+      EXPECT_EQ(panels_size(header).height % 2, 0);
     }
 }
 
