@@ -60,7 +60,8 @@ class Viewer {
     else
       player_.play(true);
     while (!window_.closing() && !Interrupt::asked() && !done_) {
-      Window::wait(kIdle_s);
+      // ImGui 1.86 sees a second click only when a frame came between both.
+      Window::wait(ImGui::IsAnyMouseDown() ? 0.01 : kIdle_s);
       DUO_TRY_ASSIGN(const bool visible, window_.begin());
       if (!visible) continue;
       take_newest();
@@ -105,11 +106,15 @@ class Viewer {
     ImGui::PopStyleVar();
     ImGui::End();
     take_keys();
+    if (!ImGui::IsAnyMouseDown()) put_title();  // who reads it may click
+    return {};
+  }
+
+  void put_title() {
     window_.set_title(!shown_                 ? "duoptic view"
                       : clicks_.wanted()      ? "duoptic view: " + clicks_.prompt()
                       : !shown_->arms.empty() ? "duoptic view: tracking"
                                               : "duoptic view");
-    return {};
   }
 
   /// The picture stands still from the first click to the last, which are then of one frame.

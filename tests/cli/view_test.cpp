@@ -131,15 +131,10 @@ class Running : public ViewWindow {
     if (!fs::exists(at("exit.txt")))
       if (const int viewer = std::atoi(bytes_of(at("view.txt")).c_str()); viewer > 0) kill(viewer, SIGKILL);
   }
-  /// Looks ten times a second; `meanwhile` is done each time.
-  void wait_for_title(
-      const std::string& words, const std::function<void()>& meanwhile = [] {}) {
+  void wait_for_title(const std::string& words) {
     std::string title;
-    ASSERT_TRUE(waited([&] {
-      meanwhile();
-      return (title = told("xdotool getwindowname " + window_)).find(words) != std::string::npos;
-    })) << "no title '"
-        << words << "' but " << title << bytes_of(at("view_err.txt"));
+    ASSERT_TRUE(waited([&] { return (title = told("xdotool getwindowname " + window_)).find(words) != std::string::npos; }))
+        << "no title '" << words << "' but " << title << bytes_of(at("view_err.txt"));
   }
   void click(int joint) {
     const auto x = static_cast<int>(window_px(kClicks_px[joint][0], kCorner_px[0]));
@@ -236,7 +231,8 @@ TEST_F(Running, ThreeClicksStartTracking) {
 /// One picture of each camera is a stream that has ended when its arms are selected.
 TEST_F(Running, BothArmsOfAStillPicture) {
   start("left.png right.png -o still.jsonl");
-  wait_for_title("right hand (1 of 6)", [this] { told("xdotool mousemove --window " + window_ + " 1256 51 click 1"); });
+  wait_for_title("right hand (1 of 3)");
+  told("xdotool mousemove --window " + window_ + " 1256 51 click 1");  // both
   for (int i = 0; i < 6; ++i) {
     wait_for_title("(" + std::to_string(i + 1) + " of 6)");
     click(i);
