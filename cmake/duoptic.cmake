@@ -48,6 +48,9 @@ function(duoptic_test name source)
   set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)  # one file
   add_test(NAME ${name} COMMAND ${target} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})  # ../shared/data is the default data
   set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600)
+  if(ARG_SLOW)
+    set_tests_properties(${name} PROPERTIES COST 10)  # begins early, so that the last test to run is a short one
+  endif()
 endfunction()
 
 function(duoptic_stage name)

@@ -88,7 +88,7 @@ struct TrackTimes {
   double engine_ms = 0, tracker_ms = 0;
 };
 
-/// One instant of a recording; everything lives until write() returns.
+/// One instant; everything lives until write() returns.
 struct TrackedFrame {
   std::int64_t number = 0;  // from 0, of the source
   double t_s = 0;           // since the source's first picture
@@ -98,7 +98,7 @@ struct TrackedFrame {
   std::optional<TrackTimes> times;  // written only when given, because they differ from run to run
 };
 
-/// Takes the frames of one recording in their order.
+/// Takes the frames of one run in their order.
 class Sink {
  public:
   virtual ~Sink() = default;

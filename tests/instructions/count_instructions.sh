@@ -17,8 +17,8 @@ instructions() {
 
 failed=0 new=
 while read -r matcher kept; do
-  three=$(instructions "$matcher" 3) one=$(instructions "$matcher" 1)
-  now=$(((three - one) / 2))
+  two=$(instructions "$matcher" 2) one=$(instructions "$matcher" 1)
+  now=$((two - one))
   echo "$matcher: $now instructions a frame, kept $kept"
   new+="$matcher $now"$'\n'
   if ((now * 10 > kept * 11 || now * 10 < kept * 9)); then
