@@ -1,5 +1,6 @@
-# duoptic_stage(NAME [VULKAN]): adds src/stages/NAME to the library, its shader when VULKAN is given, and its test.
-# duoptic_test(NAME SOURCE [SLOW]): one GoogleTest program with tests/main.cpp, one ctest entry.
+# duoptic_stage(NAME [VULKAN [SHADERS more...]]): adds src/stages/NAME to the library and its test; with VULKAN also NAME.comp and
+# the shaders named, NAME_vk.cpp, and NAME_vk_test.cpp to the one program that holds all kernels against their references.
+# duoptic_test(NAME SOURCES... [SLOW]): one GoogleTest program with tests/main.cpp, one ctest entry.
 
 # Warnings are errors in our own code; -ffp-contract=off because a fused multiply-add would round differently from engine to engine.
 add_library(duoptic_flags INTERFACE)
@@ -36,16 +37,16 @@ if(DUO_TESTS)
   target_precompile_headers(duoptic_test_main PRIVATE ${PROJECT_SOURCE_DIR}/tests/agree.h)
 endif()
 
-function(duoptic_test name source)
+function(duoptic_test name)
   cmake_parse_arguments(ARG "SLOW" "" "" ${ARGN})
   if(NOT DUO_TESTS OR (ARG_SLOW AND NOT DUO_SLOW_TESTS))
     return()
   endif()
   string(REPLACE "/" "_" target ${name}_test)
-  add_executable(${target} ${source})
+  add_executable(${target} ${ARG_UNPARSED_ARGUMENTS})
   target_link_libraries(${target} PRIVATE duoptic_test_main)
   target_precompile_headers(${target} REUSE_FROM duoptic_test_main)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)  # one file
+  set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
   add_test(NAME ${name} COMMAND ${target} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})  # ../shared/data is the default data
   set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600)
   if(ARG_SLOW)
@@ -53,13 +54,38 @@ function(duoptic_test name source)
   endif()
 endfunction()
 
+# duoptic_vulkan_test(NAME [SOURCE]): one program, run at each subgroup size that the software driver can take (8, 4, 16); under
+# sanitizers, which do not see inside kernels, at one.
+function(duoptic_vulkan_test name)
+  if(NOT DUO_TESTS OR NOT DUO_VULKAN)
+    return()
+  endif()
+  duoptic_test(${name} ${ARGN})
+  string(REPLACE "/" "_" target ${name}_test)
+  target_link_libraries(${target} PRIVATE Vulkan::Headers)
+  set_tests_properties(${name} PROPERTIES ENVIRONMENT LP_NATIVE_VECTOR_WIDTH=256)
+  if(NOT DUO_SLOW_TESTS)
+    return()
+  endif()
+  foreach(width 128 512)
+    add_test(NAME ${name}_${width} COMMAND ${target})
+    set_tests_properties(${name}_${width} PROPERTIES ENVIRONMENT LP_NATIVE_VECTOR_WIDTH=${width}
+      SKIP_RETURN_CODE 77 TIMEOUT 600)
+  endforeach()
+endfunction()
+
 function(duoptic_stage name)
-  cmake_parse_arguments(ARG "VULKAN" "" "" ${ARGN})
+  cmake_parse_arguments(ARG "VULKAN" "" "SHADERS" ${ARGN})
   set(dir ${PROJECT_SOURCE_DIR}/src/stages/${name})
   target_sources(duoptic PRIVATE ${dir}/${name}_ref.cpp ${dir}/${name}_simd.cpp)
   if(ARG_VULKAN AND DUO_VULKAN)
-    duoptic_shader(${dir}/${name}.comp)
+    foreach(shader ${name} ${ARG_SHADERS})
+      duoptic_shader(${dir}/${shader}.comp)
+    endforeach()
     target_sources(duoptic PRIVATE ${dir}/${name}_vk.cpp)
+    if(DUO_TESTS)
+      target_sources(stages_vk_test PRIVATE ${dir}/${name}_vk_test.cpp)
+    endif()
   endif()
   duoptic_test(stages/${name} ${dir}/${name}_test.cpp)
 endfunction()

@@ -1,4 +1,5 @@
 # Explicit names, no glob: what is not listed is not built.
+duoptic_vulkan_test(stages/vk)  # each stage with a kernel adds its file
 duoptic_stage(gray)
 duoptic_stage(median VULKAN)
 duoptic_stage(rectify VULKAN)
@@ -9,10 +10,6 @@ duoptic_stage(fill)
 duoptic_stage(depth)
 duoptic_stage(speckle)
 duoptic_stage(mark_invalid)
-
-foreach(stage median rectify match_around)
-  duoptic_vulkan_test(stages/${stage}_vk ${PROJECT_SOURCE_DIR}/src/stages/${stage}/${stage}_vk_test.cpp)
-endforeach()
 duoptic_stage(check_left_right)
 duoptic_stage(tile_candidates)
 duoptic_stage(match_tiles)

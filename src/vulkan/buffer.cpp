@@ -42,7 +42,8 @@ Result<Buffer> Buffer::make(const Device& device, const std::string& name, std::
   out.bytes_ = bytes;
   auto info = structure<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
   info.size = bytes;
-  info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+               VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   DUO_TRY_ASSIGN(out.buffer_, OwnedBuffer::make(device, info, tried));
   VkBuffer buffer = out.buffer_.get();
   device.set_name(buffer, VK_OBJECT_TYPE_BUFFER, name);

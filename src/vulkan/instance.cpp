@@ -171,11 +171,19 @@ PhysicalDevice Instance::inspect(VkPhysicalDevice handle) const {
   out.info.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
   out.info.subgroup_size = static_cast<int>(subgroup.subgroupSize);
 
+  constexpr VkSubgroupFeatureFlags kSubgroup = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_VOTE_BIT |
+                                               VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT |
+                                               VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+  need((subgroup.subgroupSupportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0 &&
+           (subgroup.subgroupSupportedOperations & kSubgroup) == kSubgroup,
+       "subgroup vote, arithmetic, ballot and shuffle in compute shaders");
+
   auto f13 = structure<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
   auto f12 = structure<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &f13);
   auto f11 = structure<VkPhysicalDeviceVulkan11Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES, &f12);
   auto features = structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &f11);
   fn_.vkGetPhysicalDeviceFeatures2(handle, &features);
+  need(features.features.shaderInt64, "shaderInt64");
   need(f12.storageBuffer8BitAccess, "storageBuffer8BitAccess");
   need(f11.storageBuffer16BitAccess, "storageBuffer16BitAccess");
   need(f12.timelineSemaphore, "timelineSemaphore");

@@ -5,9 +5,11 @@
 namespace duo::vk {
 namespace {
 
-constexpr VkPipelineStageFlags2 kStages = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+constexpr VkPipelineStageFlags2 kStages =
+    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
 constexpr VkAccessFlags2 kWrites = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
-constexpr VkAccessFlags2 kReads = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT;
+constexpr VkAccessFlags2 kReads =
+    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT;
 constexpr std::uint32_t kSetsPerPool = 32, kBuffersPerSet = 8;
 
 }  // namespace
@@ -50,18 +52,41 @@ void Recorder::begin() {
   barrier(kStages, kReads | kWrites);  // submissions of one queue overlap unless told otherwise
 }
 
-void Recorder::dispatch_bytes(const Kernel& kernel, std::span<const std::byte> push, std::span<const Use> uses, Size groups) {
-  DUO_CHECK(static_cast<int>(uses.size()) == kernel.buffers() && push.size() == kernel.push_bytes() && !groups.empty());
-  if (!failed_) return;
+bool Recorder::bind(const Kernel& kernel, std::span<const std::byte> push, std::span<const Use> uses,
+                    std::span<const Use> ordered) {
+  DUO_CHECK(static_cast<int>(uses.size()) == kernel.buffers() && push.size() == kernel.push_bytes());
+  if (!failed_) return false;
   const VkDescriptorSet set = set_for(kernel, uses);
-  if (!failed_) return;
-  order(uses);
+  if (!failed_) return false;
+  order(ordered);
   const DeviceFunctions& fn = device_->fn();
   fn.vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
   fn.vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &set, 0, nullptr);
   fn.vkCmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, static_cast<std::uint32_t>(push.size()),
                         push.data());
-  fn.vkCmdDispatch(commands_, static_cast<std::uint32_t>(groups.width), static_cast<std::uint32_t>(groups.height), 1);
+  return true;
+}
+
+void Recorder::dispatch_bytes(const Kernel& kernel, std::span<const std::byte> push, std::span<const Use> uses, Size groups) {
+  DUO_CHECK(!groups.empty());
+  if (bind(kernel, push, uses, uses))
+    device_->fn().vkCmdDispatch(commands_, static_cast<std::uint32_t>(groups.width), static_cast<std::uint32_t>(groups.height),
+                                1);
+}
+
+void Recorder::dispatch_indirect_bytes(const Kernel& kernel, std::span<const std::byte> push, std::span<const Use> uses,
+                                       const Buffer& groups, std::size_t offset) {
+  DUO_CHECK(offset % 4 == 0 && offset + 12 <= groups.bytes());
+  std::vector<Use> ordered(uses.begin(), uses.end());
+  ordered.push_back(reads(groups));
+  if (bind(kernel, push, uses, ordered)) device_->fn().vkCmdDispatchIndirect(commands_, groups.handle(), offset);
+}
+
+void Recorder::fill(const Buffer& dst, std::uint32_t word) {
+  if (!failed_) return;
+  const Use uses[] = {writes(dst)};
+  order(uses);
+  device_->fn().vkCmdFillBuffer(commands_, dst.handle(), 0, VK_WHOLE_SIZE, word);
 }
 
 void Recorder::copy(const Buffer& src, const Buffer& dst, std::size_t bytes) {

@@ -26,6 +26,9 @@ Use writes(const BufferView<T>& view) {
   return {view.buffer->handle(), true};
 }
 
+inline Use reads(const Buffer& buffer) { return {buffer.handle(), false}; }
+inline Use writes(const Buffer& buffer) { return {buffer.handle(), true}; }
+
 /// Workgroups of kGroupWidth x kGroupHeight that cover a picture.
 inline Size groups_for(Size size) {
   return {(size.width + kGroupWidth - 1) / kGroupWidth, (size.height + kGroupHeight - 1) / kGroupHeight};
@@ -49,6 +52,15 @@ class Recorder {
   void dispatch(const Kernel& kernel, const Push& push, std::initializer_list<Use> uses, Size groups) {
     dispatch_bytes(kernel, std::as_bytes(std::span(&push, 1)), uses, groups);
   }
+  /// The same, in as many workgroups as an earlier kernel wrote into `groups`: three words x, y, z at `offset` bytes, a
+  /// multiple of 4.
+  template <class Push>
+  void dispatch_indirect(const Kernel& kernel, const Push& push, std::initializer_list<Use> uses, const Buffer& groups,
+                         std::size_t offset = 0) {
+    dispatch_indirect_bytes(kernel, std::as_bytes(std::span(&push, 1)), uses, groups, offset);
+  }
+  /// Sets every word of a buffer.
+  void fill(const Buffer& dst, std::uint32_t word);
   /// Copies the first `bytes` of a buffer.
   void copy(const Buffer& src, const Buffer& dst, std::size_t bytes);
   Result<void> end();
@@ -70,6 +82,10 @@ class Recorder {
 
   explicit Recorder(Device& device) : device_(&device) {}
   void dispatch_bytes(const Kernel& kernel, std::span<const std::byte> push, std::span<const Use> uses, Size groups);
+  void dispatch_indirect_bytes(const Kernel& kernel, std::span<const std::byte> push, std::span<const Use> uses,
+                               const Buffer& groups, std::size_t offset);
+  /// Binds all that a dispatch needs and puts it after what it depends on; false after an error.
+  bool bind(const Kernel& kernel, std::span<const std::byte> push, std::span<const Use> uses, std::span<const Use> ordered);
   void order(std::span<const Use> uses);
   void barrier(VkPipelineStageFlags2 until, VkAccessFlags2 access);
   VkDescriptorSet set_for(const Kernel& kernel, std::span<const Use> uses);
