@@ -3,7 +3,7 @@
 #extension GL_EXT_shader_8bit_storage : require
 #include "stages/gray/gray_params.h"
 
-// Moves 4 bytes a pixel (3 in, 1 out), 7 operations. The three reads of a subgroup lie in the same 3 * size bytes: memory is read once.
+// Moves 4 bytes a pixel (3 in, 1 out), 7 operations. The three reads of a subgroup lie in one run of bytes: memory is read once.
 layout(local_size_x = kGroupWidth, local_size_y = kGroupHeight) in;
 layout(std430, binding = 0) readonly buffer Src { uint8_t src[]; };
 layout(std430, binding = 1) writeonly buffer Dst { uint8_t dst[]; };
