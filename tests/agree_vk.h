@@ -123,7 +123,7 @@ class OnDevice {
         inside[index(y, x)] = true;
       }
     T guard;
-    std::memset(&guard, kGuard, sizeof(T));
+    std::memset(static_cast<void*>(&guard), kGuard, sizeof(T));
     for (std::size_t i = 0; i < elements_; ++i)
       if (!inside[i] && staged()[i] != guard) {
         ADD_FAILURE() << what << " " << size_.width << "x" << size_.height << ": wrote outside the picture, element " << i;
@@ -142,6 +142,22 @@ class OnDevice {
   std::size_t elements_;
   vk::Buffer memory_, staging_;
 };
+
+/// Uploads all pictures, runs what `record` records, and downloads them all.
+template <class Record, class... Pictures>
+void run_with(vk::Recorder& recorder, Record record, const Pictures&... pictures) {
+  recorder.begin();
+  (pictures.record_upload(recorder), ...);
+  record();
+  (pictures.record_download(recorder), ...);
+  must(recorder.end());
+  must(recorder.run());
+}
+
+/// The bytes of a colour picture, as a gray one three times as wide.
+inline View<std::uint8_t> channels(Image<Rgb8>& color) {
+  return {&color.row(0)->r, {3 * color.width(), color.height()}, 3 * color.stride()};
+}
 
 /// Holds a kernel with one input and one output of the same size against its reference.
 ///

@@ -7,17 +7,26 @@
 
 namespace duo {
 
+std::vector<LevelShape> level_shapes(const PyramidParams& params, const MatchSetup& setup) {
+  std::vector<LevelShape> shapes;
+  LevelShape shape{setup.size, std::min(setup.max_disparity, setup.size.width)};  // beyond that no pixel has a partner
+  for (int i = 0; i < params.levels; ++i) {
+    shapes.push_back(shape);
+    shape = {half_of(shape.size), (shape.max_disparity + 1) / 2};
+  }
+  return shapes;
+}
+
 std::vector<PyramidLevel> make_levels(const PyramidParams& params, const MatchSetup& setup) {
   const bool tiles = params.search == PyramidParams::Search::kTiles;
-  std::vector<PyramidLevel> levels(static_cast<std::size_t>(params.levels));
-  Size size = setup.size;
-  int max_disparity = std::min(setup.max_disparity, size.width);  // beyond that no pixel has a partner
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    PyramidLevel& level = levels[i];
+  std::vector<PyramidLevel> levels;
+  for (const auto& [size, max_disparity] : level_shapes(params, setup)) {
+    const bool full = levels.empty();
+    PyramidLevel& level = levels.emplace_back();
     level.size = size;
     level.max_disparity = max_disparity;
     level.left_winner = Image<std::int16_t>(size);
-    if (i > 0) {
+    if (!full) {
       level.left = Image<std::uint8_t>(size);
       level.right = Image<std::uint8_t>(size);
       if (setup.masked) {
@@ -31,8 +40,6 @@ std::vector<PyramidLevel> make_levels(const PyramidParams& params, const MatchSe
       level.fine = Image<std::uint16_t>(size);
       level.sets = TileSets(size, max_disparity);
     }
-    size = half_of(size);
-    max_disparity = (max_disparity + 1) / 2;
   }
   if (tiles) all_candidates(levels.back().sets);
   return levels;

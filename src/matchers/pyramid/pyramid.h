@@ -1,4 +1,5 @@
-// The pyramid matcher: coarse-to-fine window matching with Birchfield-Tomasi costs. README.md beside this file tells the method.
+// The pyramid matcher: coarse-to-fine window matching with Birchfield-Tomasi costs. README.md beside this file tells the
+// method.
 #pragma once
 
 #include <vector>
@@ -14,6 +15,13 @@
 #include "stages/speckle/speckle.h"
 
 namespace duo {
+
+/// Size and search range of each level; level 0 is the full picture.
+struct LevelShape {
+  Size size;
+  int max_disparity = 0;
+};
+std::vector<LevelShape> level_shapes(const PyramidParams& params, const MatchSetup& setup);
 
 /// The memory of one level; level 0 is the full picture, which belongs to the caller.
 struct PyramidLevel {
@@ -45,7 +53,9 @@ class Pyramid {
  private:
   void match_around(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
   void match_tiles(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
-  GrayPair pair_of(const GrayPair& full, int level) const { return level == 0 ? full : levels_[static_cast<std::size_t>(level)].pair(); }
+  GrayPair pair_of(const GrayPair& full, int level) const {
+    return level == 0 ? full : levels_[static_cast<std::size_t>(level)].pair();
+  }
 
   PyramidParams params_;
   std::vector<PyramidLevel> levels_;
@@ -64,7 +74,9 @@ class Pyramid {
  private:
   void match_around(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
   void match_tiles(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
-  GrayPair pair_of(const GrayPair& full, int level) const { return level == 0 ? full : levels_[static_cast<std::size_t>(level)].pair(); }
+  GrayPair pair_of(const GrayPair& full, int level) const {
+    return level == 0 ? full : levels_[static_cast<std::size_t>(level)].pair();
+  }
 
   Pool& pool_;
   PyramidParams params_;

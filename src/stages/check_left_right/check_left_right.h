@@ -15,9 +15,9 @@ namespace duo {
 /// check_winners: dst = winner or -1. check_left_right: dst = fine or Disparity::kNone.
 ///
 /// Shape    all H x W; inside pictures may be empty = all inside
-/// Units    left, right px (-1 = none), fine and dst 1/16 px
+/// Units    left, right px (-1 = none), left <= x; fine and dst 1/16 px
 /// Threads  rows are independent
-/// Exact    ref and simd agree bit for bit
+/// Exact    ref, simd and vk agree bit for bit
 /// Source   Fua, "A parallel stereo algorithm that produces dense depth maps and preserves image features", 1993; reach > 0 is
 ///          ours: on slanted surfaces the right view's winner for this surface often falls one column beside
 struct CheckLeftRight {

@@ -14,7 +14,7 @@ namespace duo {
 // Shape    src and dst H x W
 // Units    src 1/16 px, dst mm; focal_baseline_px_mm = focal_px * baseline_mm
 // Threads  rows are independent
-// Exact    ref and simd agree bit for bit: one IEEE single division, one addition, one truncation
+// Exact    ref, simd and vk agree bit for bit: one IEEE single division, one addition, one truncation
 // Source   pinhole geometry of the rectified pair
 namespace ref {
 void depth(View<const std::uint16_t> d_q4, float focal_baseline_px_mm, View<std::uint16_t> depth_mm);

@@ -13,7 +13,7 @@ namespace duo {
 // Shape    src and dst H x W, not the same memory
 // Border   the picture continues by its edge pixels
 // Threads  rows are independent
-// Exact    ref and simd agree bit for bit: both sums fit 16 bits (255 * 256 + 128 < 65536)
+// Exact    ref, simd and vk agree bit for bit: both sums fit 16 bits (255 * 256 + 128 < 65536)
 // Source   thesis step 1; the binomial kernel as in Burt, Adelson, "The Laplacian pyramid", 1983
 namespace ref {
 void gaussian5x5(View<const std::uint8_t> src, View<std::uint8_t> dst);

@@ -13,7 +13,7 @@ namespace duo {
 // Shape    src and dst H x W
 // Border   none
 // Threads  rows are independent
-// Exact    ref and simd agree bit for bit; white stays 255 because the weights sum to 256
+// Exact    ref, simd and vk agree bit for bit; white stays 255 because the weights sum to 256
 // Source   ITU-R BT.601 weights in 8 bits
 namespace ref {
 void gray(View<const Rgb8> src, View<std::uint8_t> dst);

@@ -16,7 +16,7 @@ inline Size half_of(Size size) { return {(size.width + 1) / 2, (size.height + 1)
 // Shape    src H x W, dst (H+1)/2 x (W+1)/2
 // Border   an odd last row or column is used twice
 // Threads  rows are independent
-// Exact    ref and simd agree bit for bit
+// Exact    ref, simd and vk agree bit for bit
 // Source   thesis step 2: each level averages a neighbourhood of the one before
 namespace ref {
 void halve(View<const std::uint8_t> src, View<std::uint8_t> dst);

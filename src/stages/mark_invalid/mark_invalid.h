@@ -14,7 +14,7 @@ namespace duo {
 // Shape    winner, inside pictures and dst H x W; inside pictures may be empty = all inside
 // Units    winner px, dst 1/16 px
 // Threads  rows are independent
-// Exact    ref and simd agree bit for bit
+// Exact    ref, simd and vk agree bit for bit
 // Source   thesis step 2: no continuity or uniqueness constraint; where no match is found the pixel is marked
 namespace ref {
 void mark_invalid(View<const std::int16_t> winner, View<const std::uint8_t> left_inside, View<const std::uint8_t> right_inside,

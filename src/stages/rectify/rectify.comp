@@ -4,7 +4,10 @@
 #extension GL_EXT_shader_16bit_storage : require
 #include "stages/rectify/rectify_params.h"
 
+// Moves 9 bytes a gray pixel (map 6, source 1, as four neighbours share their reads in the cache, results 2) in 17 operations, 12 bytes a
+// colour one in 45.
 layout(local_size_x = kGroupWidth, local_size_y = kGroupHeight) in;
+layout(constant_id = 0) const int kChannels = 1;  // bytes of a pixel
 layout(std430, binding = 0) readonly buffer Src { uint8_t src[]; };
 layout(std430, binding = 1) readonly buffer Corner { uint corner[]; };
 layout(std430, binding = 2) readonly buffer Fraction { uint16_t fraction_q8[]; };
@@ -16,19 +19,26 @@ const uint kOutside = 0xFFFFFFFF;
 
 int index(Plane plane, ivec2 at) { return plane.offset + at.y * plane.stride + at.x; }
 
+// The blend of four pixels whose upper left one has this channel at byte i.
+uint blend(int i, uint fx, uint fy) {
+  const int below = i + kChannels * p.src.stride;
+  const uint top = uint(src[i]) * (256 - fx) + uint(src[i + kChannels]) * fx;
+  const uint bottom = uint(src[below]) * (256 - fx) + uint(src[below + kChannels]) * fx;
+  return (top * (256 - fy) + bottom * fy + 32768) >> 16;
+}
+
 void main() {
   const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
   if (at.x >= p.width || at.y >= p.height) return;
   const uint from = corner[index(p.corner, at)];
-  uint value = 0;
-  if (from != kOutside) {
-    const int i = index(p.src, ivec2(from >> 16, from & 0xFFFF));
+  const bool seen = from != kOutside;
+  const int o = kChannels * index(p.dst, at);
+  if (seen) {
+    const int i = kChannels * index(p.src, ivec2(from >> 16, from & 0xFFFF));
     const uint fraction = uint(fraction_q8[index(p.fraction, at)]);
-    const uint fx = fraction >> 8, fy = fraction & 0xFF;
-    const uint top = uint(src[i]) * (256 - fx) + uint(src[i + 1]) * fx;
-    const uint bottom = uint(src[i + p.src.stride]) * (256 - fx) + uint(src[i + p.src.stride + 1]) * fx;
-    value = (top * (256 - fy) + bottom * fy + 32768) >> 16;
+    for (int c = 0; c < kChannels; ++c) dst[o + c] = uint8_t(blend(i + c, fraction >> 8, fraction & 0xFF));
+  } else {
+    for (int c = 0; c < kChannels; ++c) dst[o + c] = uint8_t(0);
   }
-  dst[index(p.dst, at)] = uint8_t(value);
-  inside[index(p.inside, at)] = uint8_t(from != kOutside ? 255 : 0);
+  if (p.marks_inside != 0) inside[index(p.inside, at)] = uint8_t(seen ? 255 : 0);
 }

@@ -7,8 +7,9 @@ namespace duo::vk {
 #endif
 
 struct RectifyPush {
-  Plane src, corner, fraction, dst, inside;
+  Plane src, corner, fraction, dst, inside;  // src and dst in pixels
   int width, height;
+  int marks_inside;  // 0 or 1: there is an inside picture to write
 };
 
 #ifdef __cplusplus

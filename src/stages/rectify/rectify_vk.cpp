@@ -9,20 +9,41 @@ constexpr std::uint32_t kCode[] = {
 #include "spirv/rectify.comp.inc"
 };
 
+Result<Kernel> make_kernel(const Device& device, const char* name, std::uint32_t channels) {
+  const std::uint32_t constants[] = {channels};
+  return Kernel::make(device, {name, kCode, 5, sizeof(RectifyPush), constants});
+}
+
+template <class T>
+void record_with(const Kernel& kernel, Recorder& recorder, BufferView<T> src, const Rectify::Map& map, BufferView<T> dst,
+                 BufferView<std::uint8_t> inside, Size size) {
+  const bool marks_inside = !inside.absent();
+  DUO_CHECK(!src.absent() && map.corner.holds(size) && map.fraction_q8.holds(size) && dst.holds(size));
+  DUO_CHECK(!marks_inside || inside.holds(size));
+  const RectifyPush push{src.plane,    map.corner.plane, map.fraction_q8.plane, dst.plane,
+                         inside.plane, size.width,       size.height,           marks_inside};
+  // Every binding needs a buffer; the kernel does not touch the one that stands in for an absent picture.
+  const Use marks = marks_inside ? writes(inside) : writes(dst);
+  recorder.dispatch(kernel, push, {reads(src), reads(map.corner), reads(map.fraction_q8), writes(dst), marks},
+                    groups_for(size));
+}
+
 }  // namespace
 
 Result<Rectify> Rectify::make(const Device& device) {
   Rectify out;
-  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"rectify", kCode, 5, sizeof(RectifyPush)}));
+  DUO_TRY_ASSIGN(out.gray_, make_kernel(device, "rectify gray", 1));
+  DUO_TRY_ASSIGN(out.color_, make_kernel(device, "rectify color", 3));
   return out;
 }
 
 void Rectify::record(Recorder& recorder, BufferView<std::uint8_t> src, const Map& map, BufferView<std::uint8_t> dst,
                      BufferView<std::uint8_t> inside, Size size) const {
-  DUO_CHECK(!src.absent() && map.corner.holds(size) && map.fraction_q8.holds(size) && dst.holds(size) && inside.holds(size));
-  const RectifyPush push{src.plane, map.corner.plane, map.fraction_q8.plane, dst.plane, inside.plane, size.width, size.height};
-  recorder.dispatch(kernel_, push, {reads(src), reads(map.corner), reads(map.fraction_q8), writes(dst), writes(inside)},
-                    groups_for(size));
+  record_with(gray_, recorder, src, map, dst, inside, size);
+}
+
+void Rectify::record(Recorder& recorder, BufferView<Rgb8> src, const Map& map, BufferView<Rgb8> dst, Size size) const {
+  record_with(color_, recorder, src, map, dst, {}, size);
 }
 
 }  // namespace duo::vk

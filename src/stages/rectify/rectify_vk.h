@@ -14,12 +14,13 @@ class Rectify {
     BufferView<std::uint16_t> fraction_q8;
   };
   static Result<Rectify> make(const Device& device);
-  /// `size` is that of the map; what the map says must lie inside `src`.
+  /// `size` is that of the map; what the map says must lie inside `src`. `inside` may be absent: it is the same each time.
   void record(Recorder& recorder, BufferView<std::uint8_t> src, const Map& map, BufferView<std::uint8_t> dst,
               BufferView<std::uint8_t> inside, Size size) const;
+  void record(Recorder& recorder, BufferView<Rgb8> src, const Map& map, BufferView<Rgb8> dst, Size size) const;
 
  private:
-  Kernel kernel_;
+  Kernel gray_, color_;
 };
 
 }  // namespace duo::vk

@@ -37,19 +37,69 @@ TEST(RectifyVk, Agrees) {
           const OnDevice<std::uint8_t> in(device, src, "raw"), out(device, size, "dst"), inside(device, size, "inside");
           const OnDevice<std::uint32_t> corner(device, map.corner, "corner");
           const OnDevice<std::uint16_t> fraction(device, map.fraction_q8, "fraction");
-          recorder.begin();
-          for (const auto* picture : {&in, &out, &inside}) picture->record_upload(recorder);
-          corner.record_upload(recorder);
-          fraction.record_upload(recorder);
-          rectify.record(recorder, in.view(), {corner.view(), fraction.view()}, out.view(), inside.view(), size);
-          out.record_download(recorder);
-          inside.record_download(recorder);
-          must(recorder.end());
-          must(recorder.run());
+          test::run_with(
+              recorder,
+              [&] {
+                rectify.record(recorder, in.view(), {corner.view(), fraction.view()}, out.view(), inside.view(), size);
+              },
+              in, out, inside, corner, fraction);
           test::expect_same<std::uint8_t>(want, out.pixels("rectify" + where), "rectify" + where);
           test::expect_same<std::uint8_t>(want_inside, inside.pixels("rectify inside" + where), "rectify inside" + where);
           if (::testing::Test::HasFailure()) return;
         }
+  });
+}
+
+// Without an inside picture, too.
+TEST(RectifyVk, ColorAgrees) {
+  test::each_device([](vk::Device& device, const std::string& where) {
+    std::mt19937 rng(2);
+    Pool one(1);
+    const auto rectify = must(vk::Rectify::make(device));
+    auto recorder = must(vk::Recorder::make(device));
+    for (const Size raw : {Size{2, 2}, Size{131, 37}})
+      for (const Size size : test::awkward_sizes()) {
+        Image<Rgb8> src(raw), want(size);
+        test::fill(test::channels(src), test::Fill::kRandom, rng);
+        const ResampleMap map = random_map(size, raw, rng);
+        simd::rectify(one, src, map, want);
+
+        const OnDevice<Rgb8> in(device, src, "raw"), out(device, size, "dst");
+        const OnDevice<std::uint32_t> corner(device, map.corner, "corner");
+        const OnDevice<std::uint16_t> fraction(device, map.fraction_q8, "fraction");
+        test::run_with(
+            recorder,
+            [&] {
+              rectify.record(recorder, in.view(), {corner.view(), fraction.view()}, out.view(), size);
+            },
+            in, out, corner, fraction);
+        Image<Rgb8> got = out.pixels("rectify color" + where);
+        test::expect_same<std::uint8_t>(test::channels(want), test::channels(got), "rectify color" + where);
+        if (::testing::Test::HasFailure()) return;
+      }
+  });
+}
+
+TEST(RectifyVk, MarksInsideOnlyWhenAsked) {
+  test::each_device([](vk::Device& device, const std::string& where) {
+    std::mt19937 rng(3);
+    const Size raw{9, 7}, size{33, 6};
+    const auto rectify = must(vk::Rectify::make(device));
+    auto recorder = must(vk::Recorder::make(device));
+    Image<std::uint8_t> src(raw), want(size), inside(size);
+    test::fill(src.view(), test::Fill::kRandom, rng);
+    const ResampleMap map = random_map(size, raw, rng);
+    ref::rectify(src, map, want, inside);
+    const OnDevice<std::uint8_t> in(device, src, "raw"), out(device, size, "dst");
+    const OnDevice<std::uint32_t> corner(device, map.corner, "corner");
+    const OnDevice<std::uint16_t> fraction(device, map.fraction_q8, "fraction");
+    test::run_with(
+        recorder,
+        [&] {
+          rectify.record(recorder, in.view(), {corner.view(), fraction.view()}, out.view(), {}, size);
+        },
+        in, out, corner, fraction);
+    test::expect_same<std::uint8_t>(want, out.pixels("rectify" + where), "rectify without inside" + where);
   });
 }
 

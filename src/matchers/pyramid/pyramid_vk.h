@@ -1,0 +1,44 @@
+// The pyramid matcher on a device. README.md beside this file tells the method, pyramid_ref.cpp the order of its stages.
+#pragma once
+
+#include <vector>
+
+#include "matchers/pyramid/pyramid.h"
+#include "stages/halve/halve_vk.h"
+#include "stages/mark_invalid/mark_invalid_vk.h"
+#include "stages/match_around/match_around_vk.h"
+
+namespace duo::vk {
+
+/// Kernels and memory of the matcher for pictures of one size; must outlive the recordings that use it.
+class Pyramid {
+ public:
+  /// GrayPair on the device; the inside pictures are there exactly if the setup is masked.
+  struct Input {
+    BufferView<std::uint8_t> left = {}, right = {}, left_inside = {}, right_inside = {};
+  };
+  /// Errors  the device lacks memory, or the driver refuses a kernel
+  static Result<Pyramid> make(const Device& device, const PyramidParams& params, const MatchSetup& setup);
+  /// Disparity of the left picture in 1/16 px; all pictures of the size set up.
+  void record(Recorder& recorder, const Input& pair, BufferView<std::uint16_t> d_q4) const;
+
+ private:
+  /// The memory of one level; the pictures of level 0 belong to the caller.
+  struct Level {
+    LevelShape shape;
+    Buffer left = {}, right = {}, left_inside = {}, right_inside = {};
+    Buffer left_winner = {};
+  };
+  Result<Level> make_level(const Device& device, const LevelShape& shape) const;
+  Input pair_of(const Input& full, std::size_t level) const;
+  void record_around(Recorder& recorder, const Input& pair, BufferView<std::uint16_t> d_q4) const;
+
+  PyramidParams params_;
+  bool masked_ = false;
+  std::vector<Level> levels_;
+  Halve halve_;
+  MatchAround match_around_;
+  MarkInvalid mark_invalid_;
+};
+
+}  // namespace duo::vk
