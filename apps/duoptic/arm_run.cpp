@@ -49,7 +49,7 @@ Result<ArmRun> ArmRun::open(Input input, const ArmOptions& options, std::int64_t
                              input.names[0])};
   const Rig& rig = *setup.rig;
   setup.max_disparity = options.max_disparity > 0 ? options.max_disparity : disparity_at(kNearest_m, rig);
-  setup.wants = {.color = true, .depth = false};
+  setup.wants.color = true;
   DUO_TRY(run.engine_->prepare(setup));
   DUO_TRY_ASSIGN(run.tracker_, make_tracker("arm", options.tracker_preset));
   const double frame_s = input.pairs->frame_s();
@@ -57,6 +57,7 @@ Result<ArmRun> ArmRun::open(Input input, const ArmOptions& options, std::int64_t
 
   run.header_.sources = std::move(input.names);
   run.header_.engine = run.engine_->name();
+  run.header_.device = run.engine_->device();
   run.header_.matcher = options.engine.matcher;
   run.header_.matcher_preset = options.engine.preset;
   run.header_.tracker = run.tracker_->name();

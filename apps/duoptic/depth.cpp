@@ -63,6 +63,7 @@ Result<Summary> process(PairSource& pairs, Engine& engine, const Options& option
       engine.submit(pair);
       frame = &engine.collect();
     });
+    if (const std::string event = engine.take_event(); !event.empty()) say(app, "warning: " + event);
     summary.ms.push_back(times.wall_ms);
     summary.coverage_sum += coverage(*frame);
 
@@ -87,6 +88,7 @@ void print(const Summary& summary, const Engine& engine, const Options& options,
                                 {"width", setup.size.width},
                                 {"height", setup.size.height},
                                 {"engine", engine.name()},
+                                {"device", engine.device()},
                                 {"threads", options.engine.threads},
                                 {"matcher", options.engine.matcher},
                                 {"preset", options.engine.preset},

@@ -18,6 +18,7 @@ struct Matched {
   Pair pair;
   const Frame* frame = nullptr;
   double engine_ms = 0;
+  std::string event;  // Engine::take_event()
 };
 
 /// Pairs through an engine, one frame ahead; files are read one pair ahead of that. A live source gives its newest pair when
@@ -77,6 +78,7 @@ class FrameAhead {
                      engine_.submit(of.pair);
                      of.frame = &engine_.collect();
                    }).wall_ms;
+    of.event = engine_.take_event();
   }
 
   std::unique_ptr<PairSource> source_;

@@ -61,7 +61,7 @@ int run(int argc, char** argv) {
 #ifdef DUO_VIEWER
                                          view::add(app),
 #endif
-                                         version::add(app)};
+                                         version::add(app), devices::add(app)};
   const auto chosen = [&]() -> const Command* {
     for (const Command& command : commands)
       if (command.app->parsed()) return &command;

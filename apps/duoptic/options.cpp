@@ -18,10 +18,12 @@ const std::vector<std::pair<std::string, Denoise>> kDenoise = {{"auto", Denoise:
 
 CLI::Validator known_engine() {
   return {[](std::string& name) {
+            // Devices are opened once, when they are needed.
+            if (name == "vulkan" || name.starts_with("vulkan:")) return std::string();
             const auto engine = make_engine(name, 1);
             return engine ? std::string() : engine.error().what;
           },
-          "auto|ref|simd"};
+          "auto|ref|simd|vulkan[:DEVICE]"};
 }
 
 std::pair<std::string, double> parse_parameter(const std::string& text) {
@@ -70,7 +72,10 @@ EngineOptions::EngineOptions() : threads(std::max(1, static_cast<int>(std::threa
 void EngineOptions::add_to(CLI::App& app) {
   std::vector<std::string> denoise_names;
   for (const auto& [name, value] : kDenoise) denoise_names.push_back(name);
-  app.add_option("--engine", engine, "auto: the best of this machine; ref: the plain definition; simd: fast, same bits")
+  app.add_option(
+         "--engine", engine,
+         "auto: the graphics card, else simd; ref: the plain definition; simd: fast, same bits; vulkan: the graphics card, "
+         "vulkan:0 or vulkan:NAME: the device of that index or with that in its name, see duoptic devices")
       ->check(known_engine())
       ->capture_default_str();
   app.add_option("--threads", threads, "Threads; the result does not depend on them")

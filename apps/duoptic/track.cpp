@@ -86,13 +86,16 @@ std::vector<ArmSelection> selections(const Options& options) {
   return arms;
 }
 
-/// Says what happens to live cameras, once.
+/// Says what happens to live cameras, once, and to the engine.
 class Events {
  public:
   explicit Events(const CLI::App& app) : app_(app) {}
   void see(const std::string& warning) {
     if (warning != said_ && !warning.empty()) say(app_, warning);
     said_ = warning;
+  }
+  void happened(const std::string& event) {
+    if (!event.empty()) say(app_, "warning: " + event);
   }
 
  private:
@@ -106,6 +109,7 @@ Result<Next> next_frame(ArmRun& run, Events& events) {
     if (Interrupt::asked()) return Next::kEnd;
     DUO_TRY_ASSIGN(const Next next, run.next());
     if (run.header().live) events.see(run.frames().warning());
+    if (next == Next::kPicture) events.happened(run.frames().last().event);
     if (next != Next::kNothing) return next;
   }
 }

@@ -22,11 +22,14 @@ enum class Denoise : std::uint8_t {
   kBoth,      // median, then Gaussian: the thesis
 };
 
-/// Which full maps the frame shall hold besides disparity.
+/// Which full maps the frame shall hold. CPU engines have those that are on here in any case; a device sends only what is
+/// wanted.
 struct Wants {
   bool color = false;       // the rectified left picture in colour
   bool depth = false;       // depth_mm; needs a rig
   bool confidence = false;  // how sure each disparity is; of the matcher sgm alone
+  bool views = true;        // left and right, and where they are inside
+  bool disparity = true;
 };
 
 struct Setup {
@@ -42,7 +45,8 @@ struct Setup {
   bool time_stages = false;
 };
 
-/// Turns pairs into frames. One frame is in flight: submit, collect, submit, …
+/// Turns pairs into frames, in order: submit, collect, submit, … A device that is lost on the way is replaced by the CPU: no frame
+/// is missing, and take_event() tells.
 ///
 /// Errors   all that can fail is in prepare(); after a failed prepare() the engine is as it was
 /// Threads  one caller
@@ -52,18 +56,26 @@ class Engine {
   virtual ~Engine() = default;
   virtual const char* name() const = 0;
   virtual Result<void> prepare(const Setup& setup) = 0;
-  /// Starts work on a pair of the size given to prepare(); the pair must live until collect() returns.
+  /// How many pairs may be submitted before the first of them is collected.
+  virtual int in_flight() const { return 1; }
+  /// Starts work on a pair of the size given to prepare(); the pair must live until its collect() returns.
   virtual void submit(const Pair& pair) = 0;
-  /// The finished frame. It stays as it is until the submit() after the next: what comes after may work on it meanwhile, in
-  /// another thread.
+  /// The finished frame of the oldest pair submitted. It stays as it is until the frame after the next is made: what comes
+  /// after may work on it meanwhile, in another thread.
   virtual const Frame& collect() = 0;
+  /// The device that computes, where that is not the CPU.
+  virtual std::string device() const { return {}; }
+  /// What happened since the last call that the user should know, in one line; else empty.
+  virtual std::string take_event() { return {}; }
   /// The geometry of the frames; empty before prepare() and without a rig.
   virtual const std::optional<Rectified>& rectified() const = 0;
 };
 
-/// Makes an engine by name: "ref" (plain loops: the definition), "simd" (fast, same bits), "auto" (the best this machine has).
+/// Makes an engine by name: "ref" (plain loops: the definition), "simd" (fast, same bits), "vulkan" (the graphics card, same
+/// bits; "vulkan:0" or "vulkan:radeon" names the device by index or a part of its name), "auto" (the graphics card if it has all
+/// that is needed, else simd).
 ///
-/// Errors  unknown name, with the known ones
+/// Errors  unknown name, with the known ones; no such device, with what there is
 Result<std::unique_ptr<Engine>> make_engine(std::string_view name, int threads);
 
 /// The names that Setup::matcher takes, and the presets of one of them.

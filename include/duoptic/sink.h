@@ -76,7 +76,7 @@ enum class ArmSide : std::uint8_t { kRight, kLeft };
 /// What sinks are told before the first frame.
 struct TrackHeader {
   std::vector<std::string> sources;  // as the user named them, left first
-  std::string engine, matcher, matcher_preset, tracker, tracker_preset;
+  std::string engine, device, matcher, matcher_preset, tracker, tracker_preset;
   Rectified rectified;
   Size size;  // of the raw left picture
   double frame_s = 1.0 / 30;

@@ -17,7 +17,7 @@ struct Prepared {
   bool median = false, gaussian = false;  // denoising, resolved
   std::optional<Rectification> rectification;
   std::optional<Rectified> geometry;
-  Size size;               // of the rectified pictures
+  Size size;  // of the rectified pictures
   std::variant<PyramidParams, SgmParams> matcher;
 };
 

@@ -16,10 +16,16 @@ Result<std::unique_ptr<Engine>> make_engine(std::string_view name, int threads) 
   if (threads < 1 || threads > 256)
     return Error{ErrorCode::kBadInput,
                  fmt::format("make the engine: {} threads is not in 1 .. 256; leave it out for all cores", threads)};
+  constexpr std::string_view kVulkan = "vulkan";
+  if (name == "auto" && may_have_card())
+    if (auto engine = make_vulkan_engine("", threads)) return engine;
   if (name == "simd" || name == "auto") return make_simd_engine(threads);
   if (name == "ref") return make_ref_engine();
+  if (name == kVulkan) return make_vulkan_engine("", threads);
+  if (name.starts_with(kVulkan) && name[kVulkan.size()] == ':')
+    return make_vulkan_engine(name.substr(kVulkan.size() + 1), threads);
   return Error{ErrorCode::kBadInput,
-               fmt::format("make the engine: no engine is called \"{}\"; choose one of: auto, simd, ref", name)};
+               fmt::format("make the engine: no engine is called \"{}\"; choose one of: auto, vulkan, simd, ref", name)};
 }
 
 std::vector<std::string> matcher_names() { return {"sgm", "pyramid"}; }

@@ -31,12 +31,12 @@ std::string header_line(const TrackHeader& r) {
   for (const std::string& source : r.sources) sources.push_back(quoted(source));
   return fmt::format(
       R"({{"type":"header","version":{},"units":{{"length":"m","time":"s","uv":"px of the raw left picture"}},)"
-      R"("rig_from_left":[{}],"focal_px":{},"baseline_m":{},"sources":[{}],"engine":{},"matcher":{},"matcher_preset":{},)"
+      R"("rig_from_left":[{}],"focal_px":{},"baseline_m":{},"sources":[{}],"engine":{},"device":{},"matcher":{},"matcher_preset":{},)"
       R"("tracker":{},"tracker_preset":{},"width":{},"height":{},"frame_s":{}}})"
       "\n",
       kVersion, fmt::join(rotation, ","), number(r.rectified.focal_px, 4), number(r.rectified.baseline_m, 6),
-      fmt::join(sources, ","), quoted(r.engine), quoted(r.matcher), quoted(r.matcher_preset), quoted(r.tracker),
-      quoted(r.tracker_preset), r.size.width, r.size.height, number(r.frame_s, 6));
+      fmt::join(sources, ","), quoted(r.engine), r.device.empty() ? "null" : quoted(r.device), quoted(r.matcher),
+      quoted(r.matcher_preset), quoted(r.tracker), quoted(r.tracker_preset), r.size.width, r.size.height, number(r.frame_s, 6));
 }
 
 std::string joint_text(const Keypoint& k) {

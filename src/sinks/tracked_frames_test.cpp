@@ -56,7 +56,7 @@ struct Instant {
 constexpr char kHeader[] =
     R"({"type":"header","version":1,"units":{"length":"m","time":"s","uv":"px of the raw left picture"},)"
     R"("rig_from_left":[1.000000000,0.000000000,0.000000000,0.000000000,1.000000000,0.000000000,0.000000000,0.000000000,)"
-    R"(1.000000000],"focal_px":500.0000,"baseline_m":0.125000,"sources":["left.avi","odd \"name\"�.avi"],"engine":"simd",)"
+    R"(1.000000000],"focal_px":500.0000,"baseline_m":0.125000,"sources":["left.avi","odd \"name\"�.avi"],"engine":"simd","device":null,)"
     R"("matcher":"pyramid","matcher_preset":"default","tracker":"arm","tracker_preset":"thesis","width":64,"height":48,)"
     R"("frame_s":0.033333})"
     "\n";

@@ -1,6 +1,7 @@
 #include "vulkan/recorder.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace duo::vk {
 namespace {
@@ -164,6 +165,18 @@ VkDescriptorSet Recorder::set_for(const Kernel& kernel, std::span<const Use> use
   device_->fn().vkUpdateDescriptorSets(device_->handle(), 1, &write, 0, nullptr);
   sets_.push_back({kernel.set_layout(), std::move(buffers), *set});
   return *set;
+}
+
+Result<Buffer> make_filled(Device& device, const std::string& name, std::span<const std::byte> bytes) {
+  DUO_TRY_ASSIGN(Buffer out, Buffer::make(device, name, bytes.size(), Memory::kDevice));
+  DUO_TRY_ASSIGN(const Buffer staging, Buffer::make(device, name + " staging", bytes.size(), Memory::kUpload));
+  std::memcpy(staging.mapped().data(), bytes.data(), bytes.size());
+  DUO_TRY_ASSIGN(Recorder recorder, Recorder::make(device));
+  recorder.begin();
+  recorder.copy(staging, out, bytes.size());
+  DUO_TRY(recorder.end());
+  DUO_TRY(recorder.run());
+  return out;
 }
 
 Result<VkDescriptorSet> Recorder::allocate_set(VkDescriptorSetLayout layout) {

@@ -101,4 +101,9 @@ class Recorder {
   Ticket last_ = 0;
 };
 
+/// A buffer on the device that holds these bytes once this returns.
+///
+/// Errors  those of Buffer::make() and Recorder::run()
+Result<Buffer> make_filled(Device& device, const std::string& name, std::span<const std::byte> bytes);
+
 }  // namespace duo::vk

@@ -1,7 +1,7 @@
 // Timer: how long the parts of a recording take on the device's own clock.
 #pragma once
 
-#include <string>
+#include <span>
 #include <vector>
 
 #include "vulkan/recorder.h"
@@ -12,7 +12,7 @@ namespace duo::vk {
 class Timer {
  public:
   struct Time {
-    std::string stage;
+    const char* stage;
     double ns;  // 0 on a device without a clock
   };
   /// Errors  out of memory
@@ -20,16 +20,20 @@ class Timer {
 
   void start(Recorder& recorder);
   /// Ends the part that was recorded since the last call; at most as many as given to make().
-  void stage(Recorder& recorder, std::string name);
+  /// `name` lives as long as the timer.
+  void stage(Recorder& recorder, const char* name);
+  /// Valid until the next read(), which allocates nothing.
+  ///
   /// Errors  the work is not finished
-  Result<std::vector<Time>> read() const;
+  Result<std::span<const Time>> read();
 
  private:
   void stamp(Recorder& recorder, std::size_t index);
 
   const Device* device_ = nullptr;
   std::size_t capacity_ = 0;
-  std::vector<std::string> names_;
+  std::vector<Time> times_;
+  std::vector<std::uint64_t> ticks_;
   OwnedQueries queries_;
 };
 

@@ -218,8 +218,8 @@ TEST(Timer, TimesEachPart) {
     must(recorder.run());
     const auto times = must(timer.read());
     ASSERT_EQ(times.size(), 2u);
-    EXPECT_EQ(times[0].stage, "upload");
-    EXPECT_EQ(times[1].stage, "median");
+    EXPECT_STREQ(times[0].stage, "upload");
+    EXPECT_STREQ(times[1].stage, "median");
     if (device.tick_ns() != 0) {
       EXPECT_GT(times[1].ns, 0);
     }

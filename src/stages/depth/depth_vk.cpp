@@ -16,23 +16,13 @@ constexpr std::uint32_t kCode[] = {
 
 Result<Depth> Depth::make(Device& device, float focal_baseline_px_mm) {
   constexpr Size kTable{1 << 16, 1};
-  constexpr std::size_t kBytes = sizeof(std::uint16_t) << 16;
   Depth out;
   DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"depth", kCode, 3, sizeof(DepthPush)}));
-  DUO_TRY_ASSIGN(out.table_, Buffer::make(device, "depth table", kBytes, Memory::kDevice));
-  DUO_TRY_ASSIGN(const Buffer staging, Buffer::make(device, "depth table staging", kBytes, Memory::kUpload));
-
-  std::vector<std::uint16_t> every(kTable.width);
+  std::vector<std::uint16_t> every(kTable.width), answers(kTable.width);
   std::iota(every.begin(), every.end(), std::uint16_t{0});
-  auto* answers = reinterpret_cast<std::uint16_t*>(staging.mapped().data());
   ref::depth(View<const std::uint16_t>(every.data(), kTable, kTable.width), focal_baseline_px_mm,
-             View<std::uint16_t>(answers, kTable, kTable.width));
-
-  DUO_TRY_ASSIGN(Recorder recorder, Recorder::make(device));
-  recorder.begin();
-  recorder.copy(staging, out.table_, kBytes);
-  DUO_TRY(recorder.end());
-  DUO_TRY(recorder.run());
+             View<std::uint16_t>(answers.data(), kTable, kTable.width));
+  DUO_TRY_ASSIGN(out.table_, make_filled(device, "depth table", std::as_bytes(std::span(answers))));
   return out;
 }
 

@@ -1,0 +1,111 @@
+// The Vulkan engine: the whole frame on a device, the same bits; if the device is lost, the CPU goes on.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "core/check.h"
+#include "engines/engines.h"
+#include "engines/vulkan_frames.h"
+
+namespace duo {
+namespace {
+
+class VulkanEngine final : public Engine {
+ public:
+  VulkanEngine(std::unique_ptr<vk::Device> device, int threads) : device_(std::move(device)), threads_(threads) {}
+
+  const char* name() const override { return "vulkan"; }
+  std::string device() const override { return device_name_; }
+  int in_flight() const override { return vk::Frames::kSlots; }
+  const std::optional<Rectified>& rectified() const override { return prepared_->geometry; }
+  std::string take_event() override { return std::exchange(event_, {}); }
+
+  Result<void> prepare(const Setup& setup) override {
+    DUO_TRY_ASSIGN(Prepared checked, prepare_setup(setup));
+    auto prepared = std::make_unique<Prepared>(std::move(checked));
+    if (device_ != nullptr) {
+      auto work = vk::Frames::make(*device_, *prepared);
+      if (work) {
+        work_ = std::move(*work);  // the old one first: it speaks of the old setup
+        cpu_.reset();
+      } else {
+        give_up(work.error());
+      }
+    }
+    prepared_ = std::move(prepared);
+    first_ = count_ = 0;
+    if (device_ == nullptr) return prepare_cpu();
+    for (Frame& frame : frames_) frame = work_->make_frame();
+    return {};
+  }
+
+  void submit(const Pair& pair) override {
+    DUO_CHECK(prepared_ != nullptr && count_ < vk::Frames::kSlots);
+    DUO_CHECK(pair.left.pixels.size() == prepared_->setup.size && pair.right.pixels.size() == prepared_->setup.size);
+    const int slot = (first_ + count_++) % vk::Frames::kSlots;
+    pairs_[static_cast<std::size_t>(slot)] = &pair;
+    if (work_ == nullptr) return;
+    if (const auto started = work_->submit(slot, pair); !started) go_on_with_cpu(started.error());
+  }
+
+  const Frame& collect() override {
+    DUO_CHECK(count_ > 0);
+    const int slot = first_;
+    first_ = (first_ + 1) % vk::Frames::kSlots;
+    --count_;
+    const Pair& pair = *pairs_[static_cast<std::size_t>(slot)];
+    if (work_ != nullptr) {
+      current_ ^= 1;
+      Frame& frame = frames_[current_];
+      const auto done = work_->collect(slot, frame);
+      if (done) {
+        frame.sequence = pair.sequence;
+        frame.t_ns = pair.left.t_ns;
+        frame.skew_ns = pair.right.t_ns - pair.left.t_ns;
+        return frame;
+      }
+      go_on_with_cpu(done.error());
+    }
+    cpu_->submit(pair);
+    return cpu_->collect();
+  }
+
+ private:
+  void give_up(const Error& why) {
+    event_ = fmt::format("{}; the CPU goes on in its place", why.what);
+    work_.reset();
+    device_.reset();
+  }
+
+  Result<void> prepare_cpu() {
+    cpu_ = make_simd_engine(threads_);
+    return cpu_->prepare(prepared_->setup);
+  }
+
+  void go_on_with_cpu(const Error& why) {
+    give_up(why);
+    DUO_CHECK(prepare_cpu());  // its setup has been checked
+  }
+
+  std::unique_ptr<vk::Device> device_;  // null once it was lost
+  std::string device_name_ = device_->info().name;
+  int threads_;
+  std::unique_ptr<Prepared> prepared_ = std::make_unique<Prepared>();
+  std::unique_ptr<vk::Frames> work_;  // after what it refers to
+  std::unique_ptr<Engine> cpu_;       // once the device was lost
+  std::array<Frame, 2> frames_;       // the last one stays as it is while the next is made
+  unsigned current_ = 0;
+  std::array<const Pair*, vk::Frames::kSlots> pairs_{};  // in flight: count_ of them from first_
+  int first_ = 0, count_ = 0;
+  std::string event_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_vulkan_engine(std::unique_ptr<vk::Device> device, int threads) {
+  return std::make_unique<VulkanEngine>(std::move(device), threads);
+}
+
+}  // namespace duo

@@ -1,0 +1,275 @@
+#include "engines/vulkan_frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/check.h"
+
+namespace duo::vk {
+namespace {
+
+constexpr int kMostStages = static_cast<int>(std::tuple_size_v<decltype(Frame::stages)>);
+
+// Maps lie without gaps between their rows: they travel as they are.
+template <class T>
+BufferView<T> whole(const Buffer& buffer, Size size) {
+  return {buffer, {0, size.width}};
+}
+
+template <class T>
+Result<void> make_map(const Device& device, const char* name, Size size, Buffer& out, Memory memory = Memory::kDevice) {
+  const auto pixels = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
+  DUO_TRY_ASSIGN(out, Buffer::make(device, name, pixels * sizeof(T), memory));
+  return {};
+}
+
+template <class T>
+void pack(const Image<T>& src, const Buffer& dst) {
+  const std::size_t row = static_cast<std::size_t>(src.width()) * sizeof(T);
+  for (int y = 0; y < src.height(); ++y) std::memcpy(dst.mapped().data() + static_cast<std::size_t>(y) * row, src.row(y), row);
+}
+
+template <class T>
+void unpack(const Buffer& src, Image<T>& dst) {
+  if (src.bytes() == 0 || dst.empty()) return;
+  const std::size_t row = static_cast<std::size_t>(dst.width()) * sizeof(T);
+  for (int y = 0; y < dst.height(); ++y) std::memcpy(dst.row(y), src.mapped().data() + static_cast<std::size_t>(y) * row, row);
+}
+
+template <class T>
+Result<Buffer> sent(Device& device, const char* name, const Image<T>& image) {
+  std::vector<T> packed;
+  for (int y = 0; y < image.height(); ++y) packed.insert(packed.end(), image.row(y), image.row(y) + image.width());
+  return make_filled(device, name, std::as_bytes(std::span(packed)));
+}
+
+/// Where the raw picture covers the rectified one: the same in every frame.
+Image<std::uint8_t> inside_of(const ResampleMap& map, Size raw) {
+  Image<std::uint8_t> rectified(map.corner.size()), inside(map.corner.size());
+  ref::rectify(Image<std::uint8_t>(raw), map, rectified, inside);
+  return inside;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Frames>> Frames::make(Device& device, const Prepared& prepared) {
+  std::unique_ptr<Frames> out(new Frames(device, prepared));
+  DUO_TRY(out->make_kernels());
+  DUO_TRY(out->make_maps());
+  for (Slot& slot : out->slots_) {
+    DUO_TRY(out->make_slot(slot));
+    DUO_TRY(out->record(slot));
+  }
+  device.keep_pipelines();
+  return out;
+}
+
+Result<void> Frames::make_kernels() {
+  DUO_TRY_ASSIGN(gray_, Gray::make(device_));
+  if (prepared_.median) {
+    DUO_TRY_ASSIGN(median_, Median::make(device_));
+  }
+  if (prepared_.gaussian) {
+    DUO_TRY_ASSIGN(gaussian_, Gaussian::make(device_));
+  }
+  if (rectifies()) {
+    DUO_TRY_ASSIGN(rectify_, Rectify::make(device_));
+  }
+  if (!std::holds_alternative<PyramidParams>(prepared_.matcher))
+    return Error{ErrorCode::kUnsupported, "matcher sgm has no kernels"};
+  DUO_TRY_ASSIGN(matcher_, Pyramid::make(device_, std::get<PyramidParams>(prepared_.matcher), match_setup(prepared_)));
+  DUO_TRY_ASSIGN(fill_, Fill::make(device_));
+  if (prepared_.setup.wants.depth) {
+    DUO_TRY_ASSIGN(depth_, Depth::make(device_, focal_baseline_px_mm(*prepared_.geometry)));
+  }
+  return {};
+}
+
+Result<void> Frames::make_maps() {
+  const auto* maps = rectifies() ? &*prepared_.rectification : nullptr;
+  DUO_TRY(make_view(views_[0], "left", maps != nullptr ? &maps->left : nullptr));
+  DUO_TRY(make_view(views_[1], "right", maps != nullptr ? &maps->right : nullptr));
+  const Size size = prepared_.size;
+  const Wants& wants = prepared_.setup.wants;
+  DUO_TRY(make_map<std::uint16_t>(device_, "disparity", size, d_q4_));
+  DUO_TRY(make_map<std::uint8_t>(device_, "origin", size, origin_));
+  if (wants.depth) DUO_TRY(make_map<std::uint16_t>(device_, "depth", size, depth_mm_));
+  if (wants.color && rectifies()) DUO_TRY(make_map<Rgb8>(device_, "color", size, color_));
+  return {};
+}
+
+Result<void> Frames::make_view(ViewMaps& view, const char* name, const ResampleMap* map) {
+  const Size raw = prepared_.setup.size;
+  DUO_TRY(make_map<Rgb8>(device_, name, raw, view.raw));
+  DUO_TRY(make_map<std::uint8_t>(device_, name, raw, view.gray));
+  DUO_TRY(make_map<std::uint8_t>(device_, name, raw, view.denoised));
+  if (map == nullptr) return {};
+  DUO_TRY(make_map<std::uint8_t>(device_, name, prepared_.size, view.rectified));
+  DUO_TRY_ASSIGN(view.corner, sent(device_, name, map->corner));
+  DUO_TRY_ASSIGN(view.fraction_q8, sent(device_, name, map->fraction_q8));
+  DUO_TRY_ASSIGN(view.inside, sent(device_, name, inside_of(*map, raw)));
+  return {};
+}
+
+Result<void> Frames::make_slot(Slot& slot) {
+  const Size size = prepared_.size;
+  const Wants& wants = prepared_.setup.wants;
+  DUO_TRY_ASSIGN(Recorder recorder, Recorder::make(device_));
+  slot.recorder.emplace(std::move(recorder));
+  DUO_TRY_ASSIGN(slot.timer, Timer::make(device_, kMostStages));
+  for (Buffer& raw : slot.raw) DUO_TRY(make_map<Rgb8>(device_, "pictures up", prepared_.setup.size, raw, Memory::kUpload));
+  const auto make = [&]<class T>(T, bool wanted, const char* name, Buffer& out) -> Result<void> {
+    return wanted ? make_map<T>(device_, name, size, out, Memory::kDownload) : Result<void>{};
+  };
+  DUO_TRY(make(std::uint8_t{}, wants.views, "left down", slot.down.left));
+  DUO_TRY(make(std::uint8_t{}, wants.views, "right down", slot.down.right));
+  DUO_TRY(make(std::uint16_t{}, wants.disparity, "disparity down", slot.down.d_q4));
+  DUO_TRY(make(std::uint8_t{}, wants.disparity, "origin down", slot.down.origin));
+  DUO_TRY(make(std::uint8_t{}, wants.confidence, "confidence down", slot.down.confidence));
+  DUO_TRY(make(std::uint16_t{}, wants.depth, "depth down", slot.down.depth_mm));
+  return make(Rgb8{}, wants.color, "color down", slot.down.color);
+}
+
+Result<void> Frames::record(Slot& slot) {
+  slot.recorder->begin();
+  slot.timer.start(*slot.recorder);
+  const auto [left, right] = record_views(slot);
+  record_depth(slot, left, right);
+  record_downloads(slot, left, right);
+  slot.timer.stage(*slot.recorder, "download");
+  return slot.recorder->end();
+}
+
+/// Both views stage by stage, so that they run side by side. Denoising comes before resampling: only there is noise independent
+/// from pixel to pixel.
+std::array<BufferView<std::uint8_t>, 2> Frames::record_views(Slot& slot) {
+  Recorder& recorder = *slot.recorder;
+  const Size raw = prepared_.setup.size;
+  const auto each = [&](const char* stage, auto&& f) {
+    for (std::size_t i = 0; i < views_.size(); ++i) f(i);
+    slot.timer.stage(recorder, stage);
+  };
+  std::array<BufferView<std::uint8_t>, 2> now, next;
+  each("upload", [&](std::size_t i) { recorder.copy(slot.raw[i], views_[i].raw, slot.raw[i].bytes()); });
+  each("gray", [&](std::size_t i) {
+    now[i] = whole<std::uint8_t>(views_[i].gray, raw);
+    next[i] = whole<std::uint8_t>(views_[i].denoised, raw);
+    gray_.record(recorder, whole<Rgb8>(views_[i].raw, raw), now[i], raw);
+  });
+  if (prepared_.median)
+    each("median", [&](std::size_t i) {
+      median_.record(recorder, now[i], next[i], raw);
+      std::swap(now[i], next[i]);
+    });
+  if (prepared_.gaussian)
+    each("gaussian", [&](std::size_t i) {
+      gaussian_.record(recorder, now[i], next[i], raw);
+      std::swap(now[i], next[i]);
+    });
+  if (rectifies())
+    each("rectify", [&](std::size_t i) {
+      const auto out = whole<std::uint8_t>(views_[i].rectified, prepared_.size);
+      rectify_.record(recorder, now[i], map_of(views_[i]), out, {}, prepared_.size);
+      now[i] = out;
+    });
+  return now;
+}
+
+void Frames::record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right) {
+  Recorder& recorder = *slot.recorder;
+  const Size size = prepared_.size;
+  const auto d_q4 = whole<std::uint16_t>(d_q4_, size);
+  const auto origin = whole<std::uint8_t>(origin_, size);
+  Pyramid::Input pair{left, right};
+  if (rectifies())
+    pair.left_inside = whole<std::uint8_t>(views_[0].inside, size),
+    pair.right_inside = whole<std::uint8_t>(views_[1].inside, size);
+  std::get<Pyramid>(matcher_).record(recorder, pair, d_q4);
+  slot.timer.stage(recorder, "match");
+  fill_.record_measured(recorder, d_q4, origin, size);
+  slot.timer.stage(recorder, "fill");
+  if (depth_) {
+    depth_->record(recorder, d_q4, whole<std::uint16_t>(depth_mm_, size), size);
+    slot.timer.stage(recorder, "depth");
+  }
+}
+
+void Frames::record_downloads(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right) {
+  Recorder& recorder = *slot.recorder;
+  const Wants& wants = prepared_.setup.wants;
+  if (wants.color && rectifies()) {
+    const Size size = prepared_.size;
+    rectify_.record(recorder, whole<Rgb8>(views_[0].raw, prepared_.setup.size), map_of(views_[0]), whole<Rgb8>(color_, size),
+                    size);
+    slot.timer.stage(recorder, "color");
+  }
+  const auto down = [&](const Buffer& from, const Buffer& to) {
+    if (to.bytes() > 0) recorder.copy(from, to, std::min(from.bytes(), to.bytes()));
+  };
+  down(*left.buffer, slot.down.left);
+  down(*right.buffer, slot.down.right);
+  down(d_q4_, slot.down.d_q4);
+  down(origin_, slot.down.origin);
+  down(confidence_, slot.down.confidence);
+  down(depth_mm_, slot.down.depth_mm);
+  down(rectifies() ? color_ : views_[0].raw, slot.down.color);
+}
+
+Rectify::Map Frames::map_of(const ViewMaps& view) const {
+  return {whole<std::uint32_t>(view.corner, prepared_.size), whole<std::uint16_t>(view.fraction_q8, prepared_.size)};
+}
+
+Result<void> Frames::submit(int slot, const Pair& pair) {
+  Slot& at = slots_[static_cast<std::size_t>(slot)];
+  pack(pair.left.pixels, at.raw[0]);
+  pack(pair.right.pixels, at.raw[1]);
+  DUO_TRY_ASSIGN(at.ticket, at.recorder->submit());
+  return {};
+}
+
+Result<void> Frames::collect(int slot, Frame& frame) {
+  Slot& at = slots_[static_cast<std::size_t>(slot)];
+  // A card that has not finished by then never will; the software driver may be at work on large pictures.
+  constexpr std::int64_t kCardNs = 2'000'000'000;
+  DUO_TRY(device_.wait(at.ticket, device_.info().type == "software" ? kWaitNs : kCardNs));
+  unpack(at.down.left, frame.left);
+  unpack(at.down.right, frame.right);
+  unpack(at.down.d_q4, frame.disparity.d_q4);
+  unpack(at.down.origin, frame.disparity.origin);
+  unpack(at.down.confidence, frame.confidence);
+  unpack(at.down.depth_mm, frame.depth_mm);
+  unpack(at.down.color, frame.color);
+  frame.stages = {};
+  if (!prepared_.setup.time_stages) return {};
+  DUO_TRY_ASSIGN(const auto times, at.timer.read());
+  for (std::size_t i = 0; i < times.size(); ++i)
+    frame.stages[i] = {times[i].stage, std::max<std::int64_t>(1, static_cast<std::int64_t>(times[i].ns)), 0};
+  return {};
+}
+
+Frame Frames::make_frame() const {
+  Frame frame = duo::make_frame(prepared_);
+  const Wants& wants = prepared_.setup.wants;
+  if (!wants.views) frame.left = {}, frame.right = {}, frame.left_inside = {}, frame.right_inside = {};
+  if (!wants.disparity) frame.disparity = {};
+  if (wants.views && rectifies()) {
+    frame.left_inside = inside_of(prepared_.rectification->left, prepared_.setup.size);
+    frame.right_inside = inside_of(prepared_.rectification->right, prepared_.setup.size);
+  }
+  return frame;
+}
+
+std::size_t Frames::bytes_up() const { return slots_[0].raw[0].bytes() + slots_[0].raw[1].bytes(); }
+
+std::size_t Frames::bytes_down() const {
+  const auto& down = slots_[0].down;
+  std::size_t sum = 0;
+  for (const Buffer* buffer :
+       {&down.left, &down.right, &down.d_q4, &down.origin, &down.confidence, &down.depth_mm, &down.color})
+    sum += buffer->bytes();
+  return sum;
+}
+
+}  // namespace duo::vk

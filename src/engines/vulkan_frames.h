@@ -1,0 +1,89 @@
+// What the Vulkan engine does with a pair: pictures up, denoise, rectify, match, fill, depth, wanted maps down. Recorded once.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include "engines/prepared.h"
+#include "matchers/pyramid/pyramid_vk.h"
+#include "stages/depth/depth_vk.h"
+#include "stages/fill/fill_vk.h"
+#include "stages/gaussian/gaussian_vk.h"
+#include "stages/gray/gray_vk.h"
+#include "stages/median/median_vk.h"
+#include "stages/rectify/rectify_vk.h"
+#include "vulkan/timer.h"
+
+namespace duo::vk {
+
+/// Kernels, memory and recordings for the pairs of one setup. The recordings of the slots use the same maps, one after the
+/// other; what the CPU writes and reads is each slot's own.
+///
+/// Threads  one at a time
+class Frames {
+ public:
+  static constexpr int kSlots = 2;
+
+  /// Errors  the device lacks memory, or the driver refuses a kernel
+  static Result<std::unique_ptr<Frames>> make(Device& device, const Prepared& prepared);
+  Frames(const Frames&) = delete;
+  Frames& operator=(const Frames&) = delete;
+
+  /// Starts work on a pair; its slot must have been collected.
+  ///
+  /// Errors  those of Recorder::submit()
+  Result<void> submit(int slot, const Pair& pair);
+  /// Waits for it and takes the maps that the frame has memory for.
+  ///
+  /// Errors  those of Device::wait(): what the frame holds then means nothing
+  Result<void> collect(int slot, Frame& frame);
+  /// A frame with memory for what is wanted, and with what is the same in all of them.
+  Frame make_frame() const;
+  /// What a frame makes travel up and down.
+  std::size_t bytes_up() const;
+  std::size_t bytes_down() const;
+
+ private:
+  /// One camera's pictures on their way to what the matcher sees.
+  struct ViewMaps {
+    Buffer raw, gray, denoised, rectified, inside, corner, fraction_q8;
+  };
+  struct Slot {
+    std::array<Buffer, 2> raw;
+    struct {
+      Buffer left, right, d_q4, origin, confidence, depth_mm, color;  // empty where not wanted
+    } down;
+    Timer timer;
+    std::optional<Recorder> recorder;  // after all that its work uses: it waits for it
+    Ticket ticket = 0;
+  };
+
+  Frames(Device& device, const Prepared& prepared) : device_(device), prepared_(prepared) {}
+  Result<void> make_kernels();
+  Result<void> make_maps();
+  Result<void> make_view(ViewMaps& view, const char* name, const ResampleMap* map);
+  Result<void> make_slot(Slot& slot);
+  Result<void> record(Slot& slot);
+  std::array<BufferView<std::uint8_t>, 2> record_views(Slot& slot);
+  void record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right);
+  void record_downloads(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right);
+  Rectify::Map map_of(const ViewMaps& view) const;
+  bool rectifies() const { return prepared_.rectification.has_value(); }
+
+  Device& device_;
+  const Prepared& prepared_;
+  Gray gray_;
+  Median median_;
+  Gaussian gaussian_;
+  Rectify rectify_;
+  std::variant<std::monostate, Pyramid> matcher_;
+  Fill fill_;
+  std::optional<Depth> depth_;
+  std::array<ViewMaps, 2> views_;
+  Buffer d_q4_, origin_, confidence_, depth_mm_, color_;
+  std::array<Slot, kSlots> slots_;
+};
+
+}  // namespace duo::vk

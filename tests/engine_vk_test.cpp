@@ -1,0 +1,260 @@
+// The Vulkan engine: the reference's bits, pairs in flight, only what is wanted sent back, little work for the CPU, and no
+// frame missing when the device or its memory goes.
+
+#include <ctime>
+#include <map>
+#include <utility>
+
+#include "duoptic/synthetic.h"
+#include "engines/engines.h"
+#include "tests/agree_vk.h"
+#include "tests/allocations.h"
+
+namespace duo {
+namespace {
+
+using test::must;
+
+/// A device of its own for each test, as an engine owns it and tests break it; validation is silent at the end.
+class OwnDevice {
+ public:
+  explicit OwnDevice(vk::Validation validation = vk::Validation::kOn) : instance_(must(vk::Instance::open(validation))) {
+    device_ = must(vk::Device::make(instance_, must(instance_->devices()).front()));
+  }
+  ~OwnDevice() {
+    for (const std::string& message : instance_->messages()) ADD_FAILURE() << message;
+  }
+  vk::DeviceFunctions& calls() { return device_->calls(); }
+  std::unique_ptr<Engine> engine() { return make_vulkan_engine(std::move(device_), 2); }
+
+ private:
+  std::shared_ptr<vk::Instance> instance_;
+  std::unique_ptr<vk::Device> device_;
+};
+
+SyntheticPair room(int seed = 2) {
+  SyntheticSetup synthetic;
+  synthetic.size = {96, 72};
+  return render_synthetic(synthetic, seed);
+}
+
+duo::Setup setup_for(const SyntheticPair& scene) {
+  duo::Setup setup;
+  setup.size = scene.pair.left.pixels.size();
+  setup.rig = scene.rig;
+  setup.matcher = "pyramid";
+  setup.preset = "thesis";
+  setup.max_disparity = 24;
+  setup.wants = {.color = true, .depth = true};
+  return setup;
+}
+
+const Frame& run(Engine& engine, const Pair& pair) {
+  engine.submit(pair);
+  return engine.collect();
+}
+
+void expect_same_frame(const Frame& want, const Frame& got, const std::string& who) {
+  EXPECT_EQ(want.sequence, got.sequence) << who;
+  EXPECT_EQ(want.t_ns, got.t_ns) << who;
+  EXPECT_EQ(want.skew_ns, got.skew_ns) << who;
+  test::expect_same<std::uint8_t>(want.left, got.left, who + " left");
+  test::expect_same<std::uint8_t>(want.right, got.right, who + " right");
+  test::expect_same<std::uint8_t>(want.left_inside, got.left_inside, who + " left inside");
+  test::expect_same<std::uint8_t>(want.right_inside, got.right_inside, who + " right inside");
+  test::expect_same<std::uint16_t>(want.disparity.d_q4, got.disparity.d_q4, who + " disparity");
+  test::expect_same<std::uint8_t>(want.disparity.origin, got.disparity.origin, who + " origin");
+  test::expect_same<std::uint16_t>(want.depth_mm, got.depth_mm, who + " depth");
+  if (!want.confidence.empty()) test::expect_same<std::uint8_t>(want.confidence, got.confidence, who + " confidence");
+  ASSERT_EQ(want.color.size(), got.color.size()) << who;
+  for (int y = 0; y < want.color.height(); ++y)
+    ASSERT_EQ(std::memcmp(want.color.row(y), got.color.row(y), sizeof(Rgb8) * static_cast<std::size_t>(want.color.width())), 0)
+        << who << " color, row " << y;
+}
+
+std::unique_ptr<Engine> prepared(std::unique_ptr<Engine> engine, const duo::Setup& setup) {
+  const auto ready = engine->prepare(setup);
+  EXPECT_TRUE(ready) << ready.error().what;
+  return engine;
+}
+
+struct Case {
+  const char* name;
+  void (*change)(duo::Setup&);
+};
+const Case kCases[] = {
+    {"thesis", [](duo::Setup&) {}},
+    {"thesis, all denoising", [](duo::Setup& s) { s.denoise = Denoise::kBoth; }},
+    {"thesis, taken as rectified", [](duo::Setup& s) { s.rig.reset(), s.wants.depth = false; }},
+};
+
+TEST(VulkanEngine, AgreesWithTheReference) {
+  const SyntheticPair scene = room(), other = room(5);
+  for (const Case& each : kCases) {
+    duo::Setup setup = setup_for(scene);
+    each.change(setup);
+    OwnDevice device;
+    const auto reference = prepared(make_ref_engine(), setup), vulkan = prepared(device.engine(), setup);
+    EXPECT_STREQ(vulkan->name(), "vulkan");
+    EXPECT_FALSE(vulkan->device().empty());
+    for (const SyntheticPair* pair : {&scene, &other, &scene})
+      expect_same_frame(run(*reference, pair->pair), run(*vulkan, pair->pair), each.name);
+    EXPECT_EQ(vulkan->take_event(), "");
+  }
+}
+
+TEST(VulkanEngine, KeepsPairsInFlightInOrder) {
+  const SyntheticPair scenes[] = {room(), room(5), room(7)};
+  const duo::Setup setup = setup_for(scenes[0]);
+  OwnDevice device;
+  const auto reference = prepared(make_ref_engine(), setup), vulkan = prepared(device.engine(), setup);
+  ASSERT_EQ(vulkan->in_flight(), 2);
+  vulkan->submit(scenes[0].pair);
+  vulkan->submit(scenes[1].pair);
+  const Frame& first = vulkan->collect();
+  vulkan->submit(scenes[2].pair);
+  const Frame& second = vulkan->collect();
+  expect_same_frame(run(*reference, scenes[0].pair), first, "first, after the second was made");
+  expect_same_frame(run(*reference, scenes[1].pair), second, "second");
+  expect_same_frame(run(*reference, scenes[2].pair), vulkan->collect(), "third");
+}
+
+TEST(VulkanEngine, SendsOnlyWhatIsWanted) {
+  const SyntheticPair scene = room();
+  duo::Setup setup = setup_for(scene);
+  setup.wants = {.views = false, .disparity = false};
+  OwnDevice device;
+  const auto vulkan = prepared(device.engine(), setup);
+  const Frame& none = run(*vulkan, scene.pair);
+  EXPECT_TRUE(none.left.empty() && none.right.empty() && none.left_inside.empty() && none.disparity.d_q4.empty());
+  setup.wants.disparity = true;
+  ASSERT_TRUE(vulkan->prepare(setup));
+  const auto reference = prepared(make_ref_engine(), setup);
+  const Frame& some = run(*vulkan, scene.pair);
+  EXPECT_TRUE(some.left.empty());
+  test::expect_same<std::uint16_t>(run(*reference, scene.pair).disparity.d_q4, some.disparity.d_q4, "disparity alone");
+}
+
+TEST(VulkanEngine, RefusesWhatCannotWorkAndStaysAsItWas) {
+  const SyntheticPair scene = room();
+  duo::Setup setup = setup_for(scene);
+  OwnDevice device;
+  const auto vulkan = prepared(device.engine(), setup);
+  duo::Setup wrong = setup;
+  wrong.max_disparity = 0;
+  EXPECT_FALSE(vulkan->prepare(wrong));
+  const auto reference = prepared(make_ref_engine(), setup);
+  expect_same_frame(run(*reference, scene.pair), run(*vulkan, scene.pair), "after a refused setup");
+}
+
+// What the driver does, by call: how often, and how long on this thread's clock.
+struct Calls {
+  int submits = 0, waits = 0, fail_submit_at = -1, fail_wait_at = -1, allocations_left = 1 << 30;
+  std::int64_t inside_ns = 0;
+  vk::DeviceFunctions real;
+} calls;
+
+std::int64_t thread_ns() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+}
+
+template <class F>
+auto inside(F&& f) {
+  const std::int64_t begin = thread_ns();
+  const auto result = f();
+  calls.inside_ns += thread_ns() - begin;
+  return result;
+}
+
+void watch(vk::DeviceFunctions& table) {
+  calls = {};
+  calls.real = table;
+  table.vkQueueSubmit = [](VkQueue queue, std::uint32_t count, const VkSubmitInfo* info, VkFence fence) {
+    if (calls.submits++ == calls.fail_submit_at) return VK_ERROR_DEVICE_LOST;
+    return inside([&] { return calls.real.vkQueueSubmit(queue, count, info, fence); });
+  };
+  // The work itself ends, as that of a lost device never would: what it uses may be freed.
+  table.vkWaitSemaphores = [](VkDevice device, const VkSemaphoreWaitInfo* info, std::uint64_t timeout_ns) {
+    const VkResult r = inside([&] { return calls.real.vkWaitSemaphores(device, info, timeout_ns); });
+    return calls.waits++ == calls.fail_wait_at ? VK_ERROR_DEVICE_LOST : r;
+  };
+  table.vkGetSemaphoreCounterValue = [](VkDevice device, VkSemaphore semaphore, std::uint64_t* value) {
+    return inside([&] { return calls.real.vkGetSemaphoreCounterValue(device, semaphore, value); });
+  };
+  table.vkAllocateMemory = [](VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* with,
+                              VkDeviceMemory* out) {
+    if (calls.allocations_left-- <= 0) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    return calls.real.vkAllocateMemory(device, info, with, out);
+  };
+}
+
+TEST(VulkanEngine, LeavesTheCpuFree) {
+  SyntheticSetup synthetic;
+  synthetic.size = {320, 240};
+  const SyntheticPair scene = render_synthetic(synthetic, 2);
+  duo::Setup setup = setup_for(scene);
+  setup.wants = {.views = false, .disparity = false};
+  OwnDevice device(vk::Validation::kOff);  // the layer allocates
+  watch(device.calls());
+  const auto vulkan = prepared(device.engine(), setup);
+  run(*vulkan, scene.pair);
+  std::int64_t least_ns = 1 << 30;
+  for (int i = 0; i < 4; ++i) {
+    const long allocations = test::allocations;
+    const int submits = calls.submits;
+    const std::int64_t begin_ns = thread_ns(), inside_ns = calls.inside_ns;
+    run(*vulkan, scene.pair);
+    least_ns = std::min(least_ns, thread_ns() - begin_ns - (calls.inside_ns - inside_ns));
+    EXPECT_LE(calls.submits - submits, 2);
+    EXPECT_EQ(test::allocations - allocations, 0);
+  }
+  // A quarter of VGA's pixels in a quarter of its millisecond; sanitizers watch every byte.
+#ifdef NDEBUG
+  EXPECT_LT(least_ns, 250'000);
+#endif
+}
+
+void expect_cpu_goes_on(void (*injure)(), const char* how) {
+  const SyntheticPair scenes[] = {room(), room(5)};
+  const duo::Setup setup = setup_for(scenes[0]);
+  OwnDevice device;
+  watch(device.calls());
+  injure();
+  const auto vulkan = prepared(device.engine(), setup), reference = prepared(make_ref_engine(), setup);
+  std::string events;
+  for (int i = 0; i < 6; ++i) {
+    const Pair& pair = scenes[i % 2].pair;
+    expect_same_frame(run(*reference, pair), run(*vulkan, pair), std::string(how) + ", frame " + std::to_string(i));
+    events += vulkan->take_event();
+  }
+  EXPECT_NE(events.find("the CPU goes on"), std::string::npos) << how << ": " << events;
+  EXPECT_EQ(events.find("the CPU goes on"), events.rfind("the CPU goes on")) << "told once: " << events;
+}
+
+TEST(VulkanEngine, CpuGoesOnWhenTheDeviceIsLost) {
+  expect_cpu_goes_on([] { calls.fail_submit_at = 8; }, "lost at a submit");
+  expect_cpu_goes_on([] { calls.fail_wait_at = 8; }, "lost while waiting");
+}
+
+TEST(VulkanEngine, CpuGoesOnWithoutDeviceMemory) {
+  expect_cpu_goes_on([] { calls.allocations_left = 0; }, "no memory at all");
+  expect_cpu_goes_on([] { calls.allocations_left = 1; }, "memory for some");
+}
+
+TEST(VulkanEngine, PairsInFlightSurviveTheLoss) {
+  const SyntheticPair scenes[] = {room(), room(5)};
+  const duo::Setup setup = setup_for(scenes[0]);
+  OwnDevice device;
+  watch(device.calls());
+  const auto vulkan = prepared(device.engine(), setup), reference = prepared(make_ref_engine(), setup);
+  calls.fail_wait_at = calls.waits;
+  vulkan->submit(scenes[0].pair);
+  vulkan->submit(scenes[1].pair);
+  expect_same_frame(run(*reference, scenes[0].pair), vulkan->collect(), "the pair it was lost on");
+  expect_same_frame(run(*reference, scenes[1].pair), vulkan->collect(), "the pair behind");
+}
+
+}  // namespace
+}  // namespace duo
