@@ -54,8 +54,8 @@ function(duoptic_test name)
   endif()
 endfunction()
 
-# duoptic_vulkan_test(NAME [SOURCE]): one program, run at each subgroup size that the software driver can take (8, 4, 16); under
-# sanitizers, which do not see inside kernels, at one.
+# duoptic_vulkan_test(NAME [SOURCE]): one program, run at each subgroup size that the software driver can take (8, 4, 16) and
+# once with every access of the kernels checked; under sanitizers, which do not see inside kernels, at one.
 function(duoptic_vulkan_test name)
   if(NOT DUO_TESTS OR NOT DUO_VULKAN)
     return()
@@ -67,10 +67,11 @@ function(duoptic_vulkan_test name)
   if(NOT DUO_SLOW_TESTS)
     return()
   endif()
-  foreach(width 128 512)
-    add_test(NAME ${name}_${width} COMMAND ${target})
-    set_tests_properties(${name}_${width} PROPERTIES ENVIRONMENT LP_NATIVE_VECTOR_WIDTH=${width}
-      SKIP_RETURN_CODE 77 TIMEOUT 600)
+  foreach(variant LP_NATIVE_VECTOR_WIDTH=128 LP_NATIVE_VECTOR_WIDTH=512 DUOPTIC_GPU_ASSISTED=1)
+    string(REGEX REPLACE "LP_NATIVE_VECTOR_WIDTH=|DUOPTIC_|=1$" "" which ${variant})
+    string(TOLOWER ${which} which)
+    add_test(NAME ${name}_${which} COMMAND ${target})
+    set_tests_properties(${name}_${which} PROPERTIES ENVIRONMENT ${variant} SKIP_RETURN_CODE 77 TIMEOUT 600)
   endforeach()
 endfunction()
 

@@ -44,7 +44,8 @@ class VulkanEnvironment : public ::testing::Environment {
       std::puts("skipped: no Vulkan");
       std::exit(77);  // ctest: skipped
     }
-    auto instance = vk::Instance::open(vk::Validation::kOn);
+    const bool assisted = std::getenv("DUOPTIC_GPU_ASSISTED") != nullptr;
+    auto instance = vk::Instance::open(assisted ? vk::Validation::kGpuAssisted : vk::Validation::kOn);
     ASSERT_TRUE(instance.has_value()) << instance.error().what;
     instance_ = *instance;
     const auto physical = instance_->devices();

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/check.h"
+#include "vulkan/memory.h"
 
 namespace duo::vk {
 namespace {
@@ -50,19 +51,12 @@ Result<Buffer> Buffer::make(const Device& device, const std::string& name, std::
 
   VkMemoryRequirements needs;
   fn.vkGetBufferMemoryRequirements(device.handle(), buffer, &needs);
-  auto allocate = structure<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-  allocate.allocationSize = needs.size;
-  allocate.memoryTypeIndex = memory_type(device, needs.memoryTypeBits, memory);
-  DUO_TRY_ASSIGN(out.memory_, OwnedMemory::make(device, allocate, tried));
-  VkDeviceMemory block = out.memory_.get();
-  if (const VkResult r = fn.vkBindBufferMemory(device.handle(), buffer, block, 0); r != VK_SUCCESS)
+  const bool mapped = memory != Memory::kDevice;
+  DUO_TRY_ASSIGN(MemoryPart part, take_memory(device, needs, memory_type(device, needs.memoryTypeBits, memory), mapped, tried));
+  out.block_ = std::move(part.block);
+  if (const VkResult r = fn.vkBindBufferMemory(device.handle(), buffer, out.block_->memory.get(), part.offset); r != VK_SUCCESS)
     return device.error(tried, r);
-  if (memory == Memory::kDevice) return out;
-
-  void* mapped = nullptr;
-  if (const VkResult r = fn.vkMapMemory(device.handle(), block, 0, VK_WHOLE_SIZE, 0, &mapped); r != VK_SUCCESS)
-    return device.error(tried, r);
-  out.mapped_ = {static_cast<std::byte*>(mapped), bytes};
+  if (mapped) out.mapped_ = {out.block_->mapped + part.offset, bytes};
   return out;
 }
 

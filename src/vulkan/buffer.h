@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -12,6 +13,8 @@
 #include "vulkan/plane.h"
 
 namespace duo::vk {
+
+struct MemoryBlock;
 
 enum class Memory : std::uint8_t {
   kDevice,    // where kernels are fastest; not mapped
@@ -25,7 +28,8 @@ class Buffer {
   static constexpr std::size_t kMaxBytes = std::size_t{128} << 20;  // what every device must take as one storage buffer
   /// `name` is for error and validation messages; bytes > 0.
   ///
-  /// Errors  more than kMaxBytes, out of memory
+  /// Errors   more than kMaxBytes, out of memory
+  /// Threads  one at a time for a device
   static Result<Buffer> make(const Device& device, const std::string& name, std::size_t bytes, Memory memory);
 
   std::size_t bytes() const { return bytes_; }
@@ -37,7 +41,7 @@ class Buffer {
   std::size_t bytes_ = 0;
   std::span<std::byte> mapped_;
   // In this order: a buffer is destroyed before its memory.
-  OwnedMemory memory_;
+  std::shared_ptr<MemoryBlock> block_;
   OwnedBuffer buffer_;
 };
 

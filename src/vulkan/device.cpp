@@ -5,7 +5,10 @@
 
 #include <utility>
 
+#include "vulkan/pipeline_cache.h"
+
 namespace duo::vk {
+
 Result<std::unique_ptr<Device>> Device::make(std::shared_ptr<Instance> instance, const PhysicalDevice& physical) {
   if (!physical.info.lacks.empty())
     return Error{ErrorCode::kUnsupported, fmt::format("opening Vulkan device {}: it lacks {}: update its driver or use another",
@@ -49,40 +52,61 @@ Result<std::unique_ptr<Device>> Device::make(std::shared_ptr<Instance> instance,
   if (const VkResult r = device->fn_.vkCreateSemaphore(device->handle_, &semaphore, nullptr, &device->timeline_);
       r != VK_SUCCESS)
     return device->error("making a semaphore", r);
+
+  const std::string found = read_pipelines(pipeline_file(physical.pipelines_id));
+  device->pipelines_found_ = found.size();
+  auto cache = structure<VkPipelineCacheCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO);
+  cache.initialDataSize = found.size();
+  cache.pInitialData = found.data();
+  if (const VkResult r = device->fn_.vkCreatePipelineCache(device->handle_, &cache, nullptr, &device->pipelines_);
+      r != VK_SUCCESS)
+    return device->error("making a pipeline cache", r);
   return device;
+}
+
+void Device::keep_pipelines() const {
+  std::size_t bytes = 0;
+  if (fn_.vkGetPipelineCacheData(handle_, pipelines_, &bytes, nullptr) != VK_SUCCESS || bytes <= pipelines_found_) return;
+  std::string data(bytes, '\0');
+  if (fn_.vkGetPipelineCacheData(handle_, pipelines_, &bytes, data.data()) != VK_SUCCESS) return;
+  data.resize(bytes);
+  write_pipelines(pipeline_file(physical_.pipelines_id), data);
 }
 
 Device::~Device() {
   if (handle_ == VK_NULL_HANDLE) return;
   // A device that hangs can neither be waited for without end nor destroyed: it is left to the end of the program.
-  if (timeline_ != VK_NULL_HANDLE && !wait(last_)) return;
+  if (timeline_ != VK_NULL_HANDLE) (void)wait(last_);
+  if (hung_) return;
+  if (pipelines_ != VK_NULL_HANDLE) fn_.vkDestroyPipelineCache(handle_, pipelines_, nullptr);
   if (timeline_ != VK_NULL_HANDLE) fn_.vkDestroySemaphore(handle_, timeline_, nullptr);
   fn_.vkDestroyDevice(handle_, nullptr);
 }
 
 Result<Ticket> Device::submit(VkCommandBuffer commands) {
-  auto what = structure<VkCommandBufferSubmitInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO);
-  what.commandBuffer = commands;
-  auto signal = structure<VkSemaphoreSubmitInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO);
-  signal.semaphore = timeline_;
-  signal.value = last_ + 1;
-  signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  auto info = structure<VkSubmitInfo2>(VK_STRUCTURE_TYPE_SUBMIT_INFO_2);
-  info.commandBufferInfoCount = 1;
-  info.pCommandBufferInfos = &what;
-  info.signalSemaphoreInfoCount = 1;
-  info.pSignalSemaphoreInfos = &signal;
-  if (const VkResult r = fn_.vkQueueSubmit2(queue_, 1, &info, VK_NULL_HANDLE); r != VK_SUCCESS)
+  // Not vkQueueSubmit2: with it the validation layer (1.3.239) waits in vain when it looks into kernels.
+  const Ticket ticket = last_ + 1;
+  auto timeline = structure<VkTimelineSemaphoreSubmitInfo>(VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO);
+  timeline.signalSemaphoreValueCount = 1;
+  timeline.pSignalSemaphoreValues = &ticket;
+  auto info = structure<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO, &timeline);
+  info.commandBufferCount = 1;
+  info.pCommandBuffers = &commands;
+  info.signalSemaphoreCount = 1;
+  info.pSignalSemaphores = &timeline_;
+  if (const VkResult r = fn_.vkQueueSubmit(queue_, 1, &info, VK_NULL_HANDLE); r != VK_SUCCESS)
     return error("submitting work", r);
-  return ++last_;
+  return last_ = ticket;
 }
 
 Result<void> Device::wait(Ticket ticket, std::int64_t timeout_ns) const {
+  if (hung_ && !finished(ticket)) return error("waiting for work", VK_TIMEOUT);
   auto info = structure<VkSemaphoreWaitInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO);
   info.semaphoreCount = 1;
   info.pSemaphores = &timeline_;
   info.pValues = &ticket;
   const VkResult r = fn_.vkWaitSemaphores(handle_, &info, static_cast<std::uint64_t>(timeout_ns));
+  if (r == VK_TIMEOUT && ticket <= last_) hung_ = true;
   if (r != VK_SUCCESS) return error(fmt::format("waiting {} ms for work", timeout_ns / 1'000'000), r);
   return {};
 }

@@ -1,6 +1,8 @@
 // Device: one opened Vulkan device with its one compute queue.
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -8,6 +10,8 @@
 #include "vulkan/instance.h"
 
 namespace duo::vk {
+
+struct MemoryBlock;
 
 /// Stands for submitted work; tickets of one device finish in rising order.
 using Ticket = std::uint64_t;
@@ -26,15 +30,21 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   const DeviceInfo& info() const { return physical_.info; }
-  /// Errors  not finished within `timeout_ns`, device lost
+  /// Errors  not finished within `timeout_ns`, after which it is not waited for again; device lost
   Result<void> wait(Ticket ticket, std::int64_t timeout_ns = kWaitNs) const;
   bool finished(Ticket ticket) const;
+  /// Keeps what kernels were compiled to for the next start, if there is more of it than was found.
+  void keep_pipelines() const;
 
   // For this folder and its tests.
   Result<Ticket> submit(VkCommandBuffer commands);
   VkDevice handle() const { return handle_; }
   const DeviceFunctions& fn() const { return fn_; }
+  /// Tests put calls here that fail.
+  DeviceFunctions& calls() { return fn_; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
+  std::weak_ptr<MemoryBlock>& last_block(std::uint32_t type, bool mapped) const { return last_blocks_[mapped][type]; }
+  VkPipelineCache pipelines() const { return pipelines_; }
   std::uint32_t queue_family() const { return physical_.queue_family; }
   /// Nanoseconds of one tick of the device's clock; 0 where it has none.
   double tick_ns() const { return physical_.tick_ns; }
@@ -61,6 +71,10 @@ class Device {
   Ticket last_ = 0;
   DeviceFunctions fn_;
   VkPhysicalDeviceMemoryProperties memory_{};
+  mutable std::array<std::array<std::weak_ptr<MemoryBlock>, VK_MAX_MEMORY_TYPES>, 2> last_blocks_;
+  VkPipelineCache pipelines_ = VK_NULL_HANDLE;
+  std::size_t pipelines_found_ = 0;  // bytes
+  mutable std::atomic<bool> hung_ = false;
 };
 
 }  // namespace duo::vk

@@ -3,7 +3,7 @@
 target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/vulkan/devices.cpp)
 target_compile_definitions(duoptic PRIVATE DUO_VULKAN=$<BOOL:${DUO_VULKAN}>)
 if(DUO_VULKAN)
-  foreach(file instance device buffer kernel recorder timer)
+  foreach(file instance device memory pipeline_cache buffer kernel recorder timer)
     target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/vulkan/${file}.cpp)
   endforeach()
   # Headers only: the loader is opened at run time.

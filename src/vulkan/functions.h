@@ -16,11 +16,12 @@
   X(vkCreateDebugUtilsMessengerEXT) X(vkDestroyDebugUtilsMessengerEXT) X(vkSetDebugUtilsObjectNameEXT)
 
 #define DUO_VK_DEVICE_FUNCTIONS(X)                                                                                     \
-  X(vkDestroyDevice) X(vkGetDeviceQueue) X(vkQueueSubmit2)                                                             \
+  X(vkDestroyDevice) X(vkGetDeviceQueue) X(vkQueueSubmit)                                                             \
   X(vkCreateSemaphore) X(vkDestroySemaphore) X(vkWaitSemaphores) X(vkGetSemaphoreCounterValue)                         \
   X(vkCreateBuffer) X(vkDestroyBuffer) X(vkGetBufferMemoryRequirements) X(vkBindBufferMemory)                          \
   X(vkAllocateMemory) X(vkFreeMemory) X(vkMapMemory)                                                                   \
   X(vkCreateShaderModule) X(vkDestroyShaderModule) X(vkCreateComputePipelines) X(vkDestroyPipeline)                    \
+  X(vkCreatePipelineCache) X(vkDestroyPipelineCache) X(vkGetPipelineCacheData)                                          \
   X(vkCreatePipelineLayout) X(vkDestroyPipelineLayout)                                                                 \
   X(vkCreateDescriptorSetLayout) X(vkDestroyDescriptorSetLayout)                                                       \
   X(vkCreateDescriptorPool) X(vkDestroyDescriptorPool) X(vkAllocateDescriptorSets) X(vkUpdateDescriptorSets)           \

@@ -85,7 +85,7 @@ Result<void> Instance::create(Validation validation, PFN_vkGetInstanceProcAddr g
   if (create == nullptr || layers == nullptr || get(nullptr, "vkEnumerateInstanceVersion") == nullptr)
     return Error{ErrorCode::kUnsupported, "opening Vulkan: the loader knows only Vulkan 1.0: install a newer libvulkan1"};
 
-  const bool validate = validation == Validation::kOn;
+  const bool validate = validation != Validation::kOff;
   if (validate && !layer_installed(layers))
     return Error{ErrorCode::kNotFound,
                  fmt::format("opening Vulkan: validation asked for, but {} is not installed: install vulkan-validationlayers",
@@ -96,10 +96,12 @@ Result<void> Instance::create(Validation validation, PFN_vkGetInstanceProcAddr g
   listen.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
   listen.pfnUserCallback = on_message;
   listen.pUserData = this;
-  const VkValidationFeatureEnableEXT synchronisation = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+  const VkValidationFeatureEnableEXT also = validation == Validation::kGpuAssisted
+                                                ? VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT
+                                                : VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
   auto features = structure<VkValidationFeaturesEXT>(VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT, &listen);
   features.enabledValidationFeatureCount = 1;
-  features.pEnabledValidationFeatures = &synchronisation;
+  features.pEnabledValidationFeatures = &also;
 
   auto application = structure<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
   application.pApplicationName = "duoptic";
@@ -155,6 +157,7 @@ PhysicalDevice Instance::inspect(VkPhysicalDevice handle) const {
   PhysicalDevice out;
   out.handle = handle;
   out.info.name = basic.deviceName;
+  for (const std::uint8_t byte : basic.pipelineCacheUUID) out.pipelines_id += fmt::format("{:02x}", byte);
   out.info.type = type_name(basic.deviceType);
   out.info.api_version = version_name(basic.apiVersion);
   const auto need = [&](bool there, const char* what) {

@@ -13,13 +13,19 @@
 
 namespace duo::vk {
 
-enum class Validation : std::uint8_t { kOff, kOn };  // on: core and synchronisation checks; tests demand zero messages
+/// What the validation layer checks; tests demand zero messages.
+enum class Validation : std::uint8_t {
+  kOff,
+  kOn,           // calls, and that what overlaps does not depend on each other
+  kGpuAssisted,  // calls, and that kernels stay inside their buffers; slow
+};
 
 /// A device of this machine before it is opened.
 struct PhysicalDevice {
   VkPhysicalDevice handle = VK_NULL_HANDLE;
   DeviceInfo info;
   std::uint32_t queue_family = 0;
+  std::string pipelines_id;     // of what it compiles kernels to: device and driver
   double tick_ns = 0;           // of its time stamps; 0: it has none
   std::uint64_t tick_mask = 0;  // the bits of a time stamp that count
 };

@@ -51,7 +51,7 @@ Result<Kernel> Kernel::make(const Device& device, const KernelSource& source) {
   info.stage.pSpecializationInfo = &constants;
   info.layout = out.layout_.get();
   VkPipeline pipeline = VK_NULL_HANDLE;
-  if (const VkResult r = fn.vkCreateComputePipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline);
+  if (const VkResult r = fn.vkCreateComputePipelines(device.handle(), device.pipelines(), 1, &info, nullptr, &pipeline);
       r != VK_SUCCESS)
     return device.error(tried, r);
   out.pipeline_ = {device, pipeline};

@@ -1,8 +1,12 @@
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 
 #include "duoptic/devices.h"
 #include "stages/median/median_vk.h"
+#include "stages/rectify/rectify_vk.h"
 #include "tests/agree_vk.h"
+#include "vulkan/pipeline_cache.h"
 #include "vulkan/timer.h"
 
 namespace duo {
@@ -57,6 +61,66 @@ TEST(Vulkan, WaitEndsWithoutTheWork) {
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
     ASSERT_FALSE(waited.has_value());
     EXPECT_EQ(waited.error().code, ErrorCode::kDeviceLost);
+  });
+}
+
+int allocations = 0;
+PFN_vkAllocateMemory allocate_memory = nullptr;
+
+// A frame's buffers are dozens: they share blocks, do not overlap, and give them back.
+TEST(Vulkan, BuffersShareMemory) {
+  const auto instance = must(vk::Instance::open(vk::Validation::kOn));
+  const auto device = must(vk::Device::make(instance, must(instance->devices()).front()));
+  allocate_memory = device->calls().vkAllocateMemory;
+  device->calls().vkAllocateMemory = [](VkDevice d, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* with,
+                                        VkDeviceMemory* out) {
+    ++allocations;
+    return allocate_memory(d, info, with, out);
+  };
+  allocations = 0;
+  for (int round = 1; round <= 2; ++round) {
+    std::vector<vk::Buffer> buffers;
+    for (int i = 0; i < 60; ++i) {
+      const auto kind = i % 2 == 0 ? vk::Memory::kUpload : vk::Memory::kDevice;
+      buffers.push_back(must(vk::Buffer::make(*device, "part", 1000, kind)));
+      for (std::byte& b : buffers.back().mapped()) b = static_cast<std::byte>(i);
+    }
+    for (std::size_t i = 0; i < buffers.size(); i += 2)
+      for (const std::byte b : buffers[i].mapped()) ASSERT_EQ(b, static_cast<std::byte>(i));
+    EXPECT_EQ(allocations, 2 * round) << "mapped and not, once a round, as all were gone in between";
+  }
+  EXPECT_TRUE(instance->messages().empty());
+}
+
+TEST(PipelineCache, BringsBackOnlyWhatItWrote) {
+  const std::filesystem::path file = ::testing::TempDir() + "duoptic_cache/deeper/pipelines-1";
+  std::filesystem::remove(file);
+  EXPECT_EQ(vk::read_pipelines(file), "");
+  const std::string data("kernels\0and more", 16);
+  vk::write_pipelines(file, data);
+  EXPECT_EQ(vk::read_pipelines(file), data);
+  std::fstream(file, std::ios::in | std::ios::out | std::ios::binary).seekp(-3, std::ios::end).put('x');
+  EXPECT_EQ(vk::read_pipelines(file), "") << "changed on disk";
+  std::filesystem::resize_file(file, 11);
+  EXPECT_EQ(vk::read_pipelines(file), "") << "cut";
+  vk::write_pipelines("/proc/nowhere/pipelines", data);  // not an error
+}
+
+TEST(Recorder, FillsAndOrdersFills) {
+  test::each_device([](vk::Device& device, const std::string& where) {
+    const Size size{16, 3};
+    const auto median = must(vk::Median::make(device));
+    const OnDevice<std::uint8_t> a(device, size, "a"), b(device, size, "b");
+    auto recorder = must(vk::Recorder::make(device));
+    recorder.begin();
+    b.record_upload(recorder);
+    recorder.fill(*a.view().buffer, 0x07070707);
+    median.record(recorder, a.view(), b.view(), size);
+    recorder.fill(*a.view().buffer, 0x09090909);
+    b.record_download(recorder);
+    must(recorder.end());
+    must(recorder.run());
+    test::expect_same<std::uint8_t>(test::constant<std::uint8_t>(size, 7), b.pixels(where), "median of a fill" + where);
   });
 }
 
@@ -182,6 +246,26 @@ TEST(Validation, HearsTheMissingBarrier) {
   });
   ASSERT_EQ(messages.size(), 1u);
   EXPECT_NE(messages[0].find("SYNC-HAZARD-WRITE-AFTER-WRITE"), std::string::npos) << messages[0];
+}
+
+TEST(Validation, HearsTheStrayRead) {
+  const auto instance = must(vk::Instance::open(vk::Validation::kGpuAssisted));
+  const auto device = must(vk::Device::make(instance, must(instance->devices()).front()));
+  const auto rectify = must(vk::Rectify::make(*device));
+  const Size size{4, 4};
+  Image<std::uint32_t> corner(size);
+  corner.at(1, 1) = 300U << 16 | 300U;  // the picture ends long before
+  const OnDevice<std::uint32_t> corners(*device, corner.view(), "corners");
+  const OnDevice<std::uint16_t> fractions(*device, size, "fractions");
+  const OnDevice<std::uint8_t> src(*device, size, "src"), dst(*device, size, "dst"), inside(*device, size, "inside");
+  auto recorder = must(vk::Recorder::make(*device));
+  recorder.begin();
+  corners.record_upload(recorder);
+  rectify.record(recorder, src.view(), {corners.view(), fractions.view()}, dst.view(), inside.view(), size);
+  must(recorder.end());
+  must(recorder.run());
+  ASSERT_FALSE(instance->messages().empty());
+  EXPECT_NE(instance->messages()[0].find("out of bounds"), std::string::npos) << instance->messages()[0];
 }
 
 TEST(Validation, HearsTheWrongArgument) {
