@@ -4,12 +4,13 @@
 #include "stages/match_tiles/match_tiles_params.h"
 
 // One workgroup a tile, one candidate after the other for all of its pixels, two barriers a candidate:
-//   1. a column of pixel costs an invocation, summed down seven rows as it goes     -> columns
+//   1. a column of pixel costs an invocation, summed down seven rows as it goes      -> columns
 //   2. eight windows of a row an invocation, summed along x, the least of the shifts -> shifted
-//   3. the least of three rows; winners stay in registers, the right view's go to memory by atomicMin on cost << 16 | d, which takes the
-//      smallest d of equals whatever the order.
-// A pixel and candidate: 2.5 pixel costs of 20 operations, 2.5 * 2 for the columns, 1.8 * 2 + 4.7 for the windows, 12 for the winner: about
-// 75 operations, 8 shared reads, 20 bytes from the cache, one atomic. Memory: 12 bytes of channels a pixel, 4 of results, 4 to 8 of the right view.
+//   3. the least of three rows. Winners stay in registers; the right view's go to memory by atomicMin on cost << 16 | d, which
+//      takes the smallest d of equals whatever the order.
+// A pixel and candidate: 2.5 pixel costs of 20 operations, 2.5 * 2 for the columns, 1.8 * 2 + 4.7 for the windows, 12 for the
+// winner: about 75 operations, 8 accesses of shared memory, 20 bytes from the cache, one atomic. Memory: 12 bytes of channels a
+// pixel, 4 of results, 4 to 8 of the right view.
 layout(local_size_x = kTileGroup) in;
 layout(std430, binding = 0) readonly buffer LeftWords { uint left_words[]; };
 layout(std430, binding = 1) readonly buffer RightWords { uvec2 right_words[]; };
@@ -23,7 +24,7 @@ const int kWindow = 7;
 const int kColumns = kTilePixelsX + 2 * (3 + 3), kRows = kTilePixelsY + 2 * 2;  // of costs; of windows
 const int kParts = kTileGroup / kColumns, kPartRows = kRows / kParts;           // each column is cut in so many parts
 const int kCosts = kPartRows + kWindow - 1;                                     // pixels of one part
-const int kSegment = 8, kSums = kSegment + kWindow - 1;                         // windows of one invocation, and those they are moved to
+const int kSegment = 8, kSums = kSegment + kWindow - 1;                         // windows of an invocation; with their shifts
 // Odd pitches: neighbouring rows lie in different banks.
 const int kColumnPitch = kColumns + 1, kShiftedPitch = kTilePixelsX + 1;
 shared int columns[kRows * kColumnPitch];

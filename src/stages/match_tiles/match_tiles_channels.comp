@@ -3,8 +3,8 @@
 #extension GL_EXT_shader_8bit_storage : require
 #include "stages/match_tiles/match_tiles_params.h"
 
-// The channels that match_tiles.comp compares, made once a picture. Moves 5 (left) or 9 bytes a pixel (right), one more where masked,
-// in about 50 operations.
+// The channels that match_tiles.comp compares, made once a picture. Moves 5 (left) or 9 bytes a pixel (right), one more where
+// masked, in about 50 operations.
 //   left:  gray | sobel_x << 8 | sobel_y << 16
 //   right: gray | low x << 8 | high x << 16, low y | high y << 8
 // Outside the raw pictures every channel has a value that is further than any truncation from all values of the other side.
