@@ -20,7 +20,8 @@ struct Case {
 std::vector<Case> cases() {
   std::vector<Case> out;
   // Radius 2 is tried by one invocation a block, a row of 95 in two rounds by sixteen.
-  for (const Size size : {Size{1, 1}, Size{2, 3}, Size{5, 9}, Size{16, 8}, Size{17, 9}, Size{33, 17}, Size{67, 37}, Size{95, 5}})
+  for (const Size size :
+       {Size{1, 1}, Size{2, 3}, Size{5, 9}, Size{16, 8}, Size{17, 9}, Size{33, 17}, Size{67, 37}, Size{95, 5}})
     for (const test::Fill how : test::kFills)
       for (const bool masked : {false, true})
         for (const int radius : {0, 2, 3, 12}) {

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_16bit_storage : require
 #include "stages/match_tiles/match_tiles_params.h"
 
@@ -32,6 +33,7 @@ shared int shifted[kRows * kShiftedPitch];
 
 const int kPixels = kTilePixelsX * kTilePixelsY / kTileGroup;  // of one invocation
 const int kNoCost = 0x7FFF;
+// Loops over these are unrolled, so that they are registers.
 uint left_costs[kCosts];  // channels of the invocation's column of the left picture
 int best[kPixels], winner[kPixels], before[kPixels], after[kPixels], previous[kPixels];
 
@@ -53,7 +55,7 @@ void sum_columns(int me, int d) {
   const ivec2 top = column_top(me);
   const int x = clamp(top.x - d, 0, p.width - 1);
   int costs[kCosts], sum = 0;
-  for (int i = 0; i < kCosts; ++i) {
+  [[unroll]] for (int i = 0; i < kCosts; ++i) {
     costs[i] = pixel_cost(left_costs[i], right_words[row_start(top.y + i) + x]);
     sum += costs[i];
     if (i >= kWindow) sum -= costs[i - kWindow];
@@ -68,21 +70,21 @@ void shift_windows(int me) {
   const ivec2 centre = tile_corner() + ivec2(first - 3, row - 2);  // of sums[0]
   int sums[kSums], column[kSums + kWindow - 1], sum = 0;
   const bool in_picture = centre.y >= 0 && centre.y < p.height;
-  for (int i = 0; i < kSums + kWindow - 1; ++i) {
+  [[unroll]] for (int i = 0; i < kSums + kWindow - 1; ++i) {
     column[i] = columns[row * kColumnPitch + first + i];
     sum += column[i];
     if (i >= kWindow) sum -= column[i - kWindow];
     const int at = i - (kWindow - 1);
     if (at >= 0) sums[at] = in_picture && centre.x + at >= 0 && centre.x + at < p.width ? sum : kNoCost;
   }
-  for (int i = 0; i < kSegment; ++i)
+  [[unroll]] for (int i = 0; i < kSegment; ++i)
     shifted[row * kShiftedPitch + first + i] = p.reach == 3 ? min(min(sums[i], sums[i + 2]), min(sums[i + 4], sums[i + 6]))
                                                             : min(min(sums[i + 1], sums[i + 3]), sums[i + 5]);
 }
 
 // `follows`: the candidate before this one was d - 1.
 void choose(int me, int d, bool follows) {
-  for (int k = 0; k < kPixels; ++k) {
+  [[unroll]] for (int k = 0; k < kPixels; ++k) {
     const int i = me + k * kTileGroup, y = i / kTilePixelsX, x = i % kTilePixelsX, s = y * kShiftedPitch + x;
     const ivec2 at = tile_corner() + ivec2(x, y);
     if (at.x < d || at.x >= p.width || at.y >= p.height) continue;
@@ -108,7 +110,7 @@ int sub_pixel(int before, int best, int after) {
 }
 
 void write_winners(int me) {
-  for (int k = 0; k < kPixels; ++k) {
+  [[unroll]] for (int k = 0; k < kPixels; ++k) {
     const int i = me + k * kTileGroup;
     const ivec2 at = tile_corner() + ivec2(i % kTilePixelsX, i / kTilePixelsX);
     if (at.x >= p.width || at.y >= p.height) continue;
@@ -121,8 +123,8 @@ void write_winners(int me) {
 void main() {
   const int me = int(gl_LocalInvocationIndex);
   const ivec2 top = column_top(me);
-  for (int i = 0; i < kCosts; ++i) left_costs[i] = left_words[row_start(top.y + i) + clamp(top.x, 0, p.width - 1)];
-  for (int k = 0; k < kPixels; ++k) {
+  [[unroll]] for (int i = 0; i < kCosts; ++i) left_costs[i] = left_words[row_start(top.y + i) + clamp(top.x, 0, p.width - 1)];
+  [[unroll]] for (int k = 0; k < kPixels; ++k) {
     best[k] = before[k] = after[k] = previous[k] = kNoCost;
     winner[k] = -1;
   }
