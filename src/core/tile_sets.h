@@ -11,6 +11,11 @@ namespace duo {
 struct TileSets {
   static constexpr int kWidth = 48, kHeight = 16;  // px; with its margins a tile is 64 wide: whole vectors of bytes everywhere
   static Size tiles_of(Size picture) { return {(picture.width + kWidth - 1) / kWidth, (picture.height + kHeight - 1) / kHeight}; }
+  /// Of the same bits in words of 32, as devices keep them: one row a tile.
+  static Size shape32(Size picture, int max) {
+    const Size tiles = tiles_of(picture);
+    return {(max + 31) / 32, tiles.width * tiles.height};
+  }
 
   Size tiles;
   int max_disparity = 0;

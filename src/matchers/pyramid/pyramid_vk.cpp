@@ -1,6 +1,6 @@
 #include "matchers/pyramid/pyramid_vk.h"
 
-#include "matchers/pyramid/pyramid.h"
+#include <utility>
 
 namespace duo::vk {
 namespace {
@@ -18,18 +18,38 @@ BufferView<T> whole(const Buffer& buffer, Size size) {
 }  // namespace
 
 Result<Pyramid> Pyramid::make(const Device& device, const PyramidParams& params, const MatchSetup& setup) {
-  if (params.search != PyramidParams::Search::kAround)
-    return Error{ErrorCode::kBadInput, "set up matcher pyramid on a device: only its preset \"thesis\" has kernels"};
+  if (params.search == PyramidParams::Search::kTiles && params.speckle > 0)
+    return Error{ErrorCode::kUnsupported, "set up matcher pyramid on a device: islands are not removed there yet; use speckle=0"};
   Pyramid out;
   out.params_ = params;
   out.masked_ = setup.masked;
   DUO_TRY_ASSIGN(out.halve_, Halve::make(device));
-  DUO_TRY_ASSIGN(out.match_around_, MatchAround::make(device));
-  DUO_TRY_ASSIGN(out.mark_invalid_, MarkInvalid::make(device));
+  if (params.search == PyramidParams::Search::kAround) {
+    DUO_TRY_ASSIGN(out.around_, make_around(device));
+  } else {
+    DUO_TRY_ASSIGN(out.tiles_, make_tiles(device, setup.size));
+  }
   for (const LevelShape& shape : level_shapes(params, setup)) {
     DUO_TRY_ASSIGN(Level level, out.make_level(device, shape));
     out.levels_.push_back(std::move(level));
   }
+  return out;
+}
+
+Result<Pyramid::Around> Pyramid::make_around(const Device& device) {
+  Around out;
+  DUO_TRY_ASSIGN(out.match, MatchAround::make(device));
+  DUO_TRY_ASSIGN(out.mark_invalid, MarkInvalid::make(device));
+  return out;
+}
+
+Result<Pyramid::Tiles> Pyramid::make_tiles(const Device& device, Size size) {
+  Tiles out;
+  DUO_TRY_ASSIGN(out.match, MatchTiles::make(device));
+  DUO_TRY_ASSIGN(out.check, CheckLeftRight::make(device));
+  DUO_TRY_ASSIGN(out.candidates, TileCandidates::make(device));
+  DUO_TRY_ASSIGN(out.median, Median::make(device));
+  DUO_TRY_ASSIGN(out.filtered, make_image<std::uint16_t>(device, "filtered", size));
   return out;
 }
 
@@ -45,6 +65,13 @@ Result<Pyramid::Level> Pyramid::make_level(const Device& device, const LevelShap
     }
   }
   DUO_TRY_ASSIGN(out.left_winner, make_image<std::int16_t>(device, "left winner", size));
+  if (tiles_) {
+    DUO_TRY_ASSIGN(out.right_winner, make_image<std::int16_t>(device, "right winner", size));
+    DUO_TRY_ASSIGN(out.checked, make_image<std::int16_t>(device, "checked", size));
+    DUO_TRY_ASSIGN(out.fine, make_image<std::uint16_t>(device, "fine", size));
+    DUO_TRY_ASSIGN(out.sets, make_image<std::uint32_t>(device, "sets", TileSets::shape32(size, shape.max_disparity)));
+    DUO_TRY_ASSIGN(out.scratch, MatchTiles::Scratch::make(device, size));
+  }
   return out;
 }
 
@@ -58,6 +85,11 @@ Pyramid::Input Pyramid::pair_of(const Input& full, std::size_t level) const {
 
 void Pyramid::record(Recorder& recorder, const Input& pair, BufferView<std::uint16_t> d_q4) const {
   DUO_CHECK(masked_ != pair.left_inside.absent());
+  record_halving(recorder, pair);
+  around_ ? record_around(recorder, pair, d_q4) : record_tiles(recorder, pair, d_q4);
+}
+
+void Pyramid::record_halving(Recorder& recorder, const Input& pair) const {
   for (std::size_t i = 1; i < levels_.size(); ++i) {
     const Input from = pair_of(pair, i - 1), to = pair_of(pair, i);
     const Size size = levels_[i - 1].shape.size;
@@ -67,7 +99,6 @@ void Pyramid::record(Recorder& recorder, const Input& pair, BufferView<std::uint
     halve_.record_inside(recorder, from.left_inside, to.left_inside, size);
     halve_.record_inside(recorder, from.right_inside, to.right_inside, size);
   }
-  record_around(recorder, pair, d_q4);
 }
 
 void Pyramid::record_around(Recorder& recorder, const Input& pair, BufferView<std::uint16_t> d_q4) const {
@@ -76,14 +107,69 @@ void Pyramid::record_around(Recorder& recorder, const Input& pair, BufferView<st
     const Input here = pair_of(pair, i);
     const Size size = levels_[i].shape.size;
     const auto winner = whole<std::int16_t>(levels_[i].left_winner, size);
-    match_around_.record(
-        recorder,
-        {here.left, here.right, here.left_inside, here.right_inside, coarser, radius_of(params_, static_cast<int>(i))}, winner,
-        size);
+    const int radius = radius_of(params_, static_cast<int>(i));
+    around_->match.record(recorder, {here.left, here.right, here.left_inside, here.right_inside, coarser, radius}, winner,
+                          size);
     coarser = winner;
   }
   const auto& [size, max_disparity] = levels_[0].shape;
-  mark_invalid_.record(recorder, {coarser, pair.left_inside, pair.right_inside, max_disparity}, d_q4, size);
+  around_->mark_invalid.record(recorder, {coarser, pair.left_inside, pair.right_inside, max_disparity}, d_q4, size);
+}
+
+void Pyramid::record_tiles(Recorder& recorder, const Input& pair, BufferView<std::uint16_t> d_q4) const {
+  // Channels of all levels first: they depend on pictures only, so nothing has to wait between them.
+  for (std::size_t i = 0; i < levels_.size(); ++i)
+    tiles_->match.record_channels(recorder, tiles_input(pair, i), tiles_params(i), levels_[i].scratch);
+  for (std::size_t i = levels_.size(); i-- > 0;) {
+    const Level& level = levels_[i];
+    const Size size = level.shape.size;
+    tiles_->match.record(recorder, tiles_input(pair, i), tiles_params(i), level.scratch,
+                         {whole<std::int16_t>(level.left_winner, size), whole<std::int16_t>(level.right_winner, size),
+                          whole<std::uint16_t>(level.fine, size)});
+    if (i > 0) record_candidates(recorder, pair, i);
+  }
+  record_checked(recorder, pair, d_q4);
+}
+
+MatchTiles::Input Pyramid::tiles_input(const Input& pair, std::size_t level) const {
+  const Input here = pair_of(pair, level);
+  const auto& [size, max_disparity] = levels_[level].shape;
+  MatchTiles::Input out{here.left, here.right, here.left_inside, here.right_inside, {}, max_disparity};
+  if (level + 1 < levels_.size()) out.sets = sets_of(level);
+  return out;
+}
+
+MatchTilesParams Pyramid::tiles_params(std::size_t level) const { return {params_.truncation, params_.sobel_clip, level == 0}; }
+
+BufferView<std::uint32_t> Pyramid::sets_of(std::size_t level) const {
+  const auto& [size, max_disparity] = levels_[level].shape;
+  return whole<std::uint32_t>(levels_[level].sets, TileSets::shape32(size, max_disparity));
+}
+
+/// What a level found becomes the candidates of the next finer one.
+void Pyramid::record_candidates(Recorder& recorder, const Input& pair, std::size_t coarser) const {
+  const Level& level = levels_[coarser];
+  const Input here = pair_of(pair, coarser);
+  const Size size = level.shape.size;
+  const auto left = whole<std::int16_t>(level.left_winner, size), right = whole<std::int16_t>(level.right_winner, size),
+             checked = whole<std::int16_t>(level.checked, size);
+  tiles_->check.record_winners(recorder, {left, right, here.left_inside, here.right_inside, params_.tolerance, 0}, checked,
+                               size);
+  const auto& [finer_size, max_disparity] = levels_[coarser - 1].shape;
+  tiles_->candidates.record(recorder, {checked, left, params_.grow, params_.margin}, sets_of(coarser - 1), finer_size,
+                            max_disparity);
+}
+
+void Pyramid::record_checked(Recorder& recorder, const Input& pair, BufferView<std::uint16_t> d_q4) const {
+  const Level& full = levels_[0];
+  const Size size = full.shape.size;
+  // Medians go back and forth between two images; the check starts in the one from which the last median ends in d_q4.
+  BufferView<std::uint16_t> now = d_q4, next = whole<std::uint16_t>(tiles_->filtered, size);
+  if (params_.medians % 2 != 0) std::swap(now, next);
+  const auto left = whole<std::int16_t>(full.left_winner, size), right = whole<std::int16_t>(full.right_winner, size);
+  tiles_->check.record(recorder, {left, right, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach},
+                       whole<std::uint16_t>(full.fine, size), now, size);
+  for (int i = 0; i < params_.medians; ++i, std::swap(now, next)) tiles_->median.record(recorder, now, next, size);
 }
 
 }  // namespace duo::vk

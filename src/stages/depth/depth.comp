@@ -4,7 +4,8 @@
 #extension GL_EXT_shader_16bit_storage : require
 #include "stages/depth/depth_params.h"
 
-// Moves 4 bytes a pixel, and reads the table once, from the cache: of its 128 kB only 32 bytes for each pixel of disparity that occurs.
+// Moves 4 bytes a pixel, and reads the table once, from the cache: of its 128 kB only 32 bytes for each whole disparity that
+// occurs.
 layout(local_size_x = kGroupWidth, local_size_y = kGroupHeight) in;
 layout(std430, binding = 0) readonly buffer Src { uint16_t src[]; };
 layout(std430, binding = 1) readonly buffer Table { uint16_t table[]; };

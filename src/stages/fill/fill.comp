@@ -4,8 +4,8 @@
 #extension GL_EXT_shader_16bit_storage : require
 #include "stages/fill/fill_params.h"
 
-// Moves 3 bytes a pixel to mark, 5 where it fills. One workgroup a row: what was measured becomes one bit a pixel in shared memory, and
-// a hole looks along whole words of it, so that the nearest measurement is a read or two away, and width / 32 at most.
+// Moves 3 bytes a pixel to mark, 5 where it fills. One workgroup a row: what was measured becomes one bit a pixel in shared
+// memory, and a hole looks along whole words of it: the nearest measurement is a read or two away, and width / 32 at most.
 layout(local_size_x = kFillGroup) in;
 layout(std430, binding = 0) buffer Disparity { uint16_t d_q4[]; };
 layout(std430, binding = 1) writeonly buffer Origin { uint8_t origin[]; };

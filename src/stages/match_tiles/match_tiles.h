@@ -32,7 +32,7 @@ struct MatchTilesParams {
 /// Units    left, right px, -1 = no candidate; fine 1/16 px, Disparity::kNone = no candidate
 /// Border   channels continue by their edge pixels, for any d
 /// Threads  bands of tiles are independent
-/// Exact    ref and simd agree bit for bit; window sums stay below 49 * 36 = 1764
+/// Exact    ref, simd and vk agree bit for bit; window sums stay below 49 * 36 = 1764
 /// Source   Birchfield, Tomasi 1998 (intervals); Bobick, Intille, "Large occlusion stereo", 1999 (shiftable windows); Sobel
 ///          channels after Hirschmueller's pre-filtered BT in common SGM practice; V-shaped sub-pixel: Haller, Nedevschi,
 ///          "Design of interpolation functions for subpixel-accuracy stereo-vision systems", 2012

@@ -4,8 +4,8 @@
 #extension GL_EXT_shader_16bit_storage : require
 #include "stages/rectify/rectify_params.h"
 
-// Moves 9 bytes a gray pixel (map 6, source 1, as four neighbours share their reads in the cache, results 2) in 17 operations, 12 bytes a
-// colour one in 45.
+// Moves 9 bytes a gray pixel (map 6, source 1, as four neighbours share their reads in the cache, results 2) in 17 operations,
+// 12 bytes a colour one in 45.
 layout(local_size_x = kGroupWidth, local_size_y = kGroupHeight) in;
 layout(constant_id = 0) const int kChannels = 1;  // bytes of a pixel
 layout(std430, binding = 0) readonly buffer Src { uint8_t src[]; };

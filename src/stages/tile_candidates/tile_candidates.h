@@ -17,7 +17,7 @@ namespace duo {
 /// Shape    checked, unchecked: the coarser level's size; sets: of this level
 /// Units    px of the coarser level, -1 = none
 /// Threads  tile rows are independent
-/// Exact    ref and simd agree bit for bit
+/// Exact    ref, simd and vk agree bit for bit
 /// Source   ours; neighbours' candidates as in coarse-to-fine practice, sets instead of ranges so that two surfaces in one tile do
 ///          not cost all the depth between them
 struct TileCandidates {
