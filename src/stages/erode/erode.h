@@ -17,7 +17,7 @@ enum class Neighbours : std::uint8_t { kFour, kEight };
 // outside
 //          a window, a crop to that window grown by one pixel gives the same result
 // Threads  rows are independent
-// Exact    ref and simd agree bit for bit
+// Exact    ref, simd and vk agree bit for bit
 // Source   Serra, "Image Analysis and Mathematical Morphology", 1982
 namespace ref {
 void erode(View<const std::uint8_t> src, Neighbours neighbours, View<std::uint8_t> dst);

@@ -12,7 +12,7 @@ namespace duo {
 //
 // Shape    hue, saturation and value H x W
 // Threads  rows are independent; counts do not depend on their order
-// Exact    ref and simd agree bit for bit
+// Exact    ref, simd and vk agree bit for bit
 // Source   Swain, Ballard, "Color indexing", 1991
 struct ColorCount {
   View<const std::uint8_t> hue, saturation, value;

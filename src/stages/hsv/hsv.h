@@ -23,7 +23,7 @@ struct HsvPlanes {
 // Shape    src and all of dst H x W
 // Border   none
 // Threads  rows are independent
-// Exact    ref and simd agree bit for bit. The quotients are those of integers below 2^24, so a correctly rounded float
+// Exact    ref, simd and vk agree bit for bit. The quotients are those of integers below 2^24, so a correctly rounded float
 // division,
 //          truncated, gives them too: n/d falls short of the next integer by at least 1/d, more than the rounding (n/d) 2^-24
 // Source   Smith, "Color gamut transform pairs", 1978

@@ -15,7 +15,7 @@ namespace duo {
 /// Units    as in ColorModel and DepthGate
 /// Border   windows may reach over it
 /// Threads  rows are independent
-/// Exact    ref and simd agree bit for bit
+/// Exact    ref, simd and vk agree bit for bit
 /// Source   the colour blobs of Wren et al., "Pfinder", 1997, with a depth gate; likelihood tables as in Jones, Rehg,
 /// "Statistical
 ///          color models with application to skin detection", 2002

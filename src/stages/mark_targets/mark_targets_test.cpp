@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tests/agree.h"
+#include "tests/targets.h"
 #include "tests/time.h"
 
 namespace duo {
@@ -87,26 +87,6 @@ TEST(MarkTargets, DepthGate) {
   expect_marks(scene, {2, 2, 2, 2, 2, 2, 2, 2});
 }
 
-Target random_target(std::mt19937& rng, Size size, int tables) {
-  const auto below = [&](int n) { return static_cast<int>(rng() % static_cast<unsigned>(n)); };
-  Target out;
-  out.color = {static_cast<std::uint8_t>(rng()),
-               static_cast<std::uint8_t>(below(130)),
-               static_cast<std::uint8_t>(below(64)),
-               static_cast<std::uint8_t>(below(64)),
-               static_cast<std::int16_t>(below(tables + 2) - 2),
-               100};
-  if (out.color.likelihood < 0) out.color.likelihood = -1;
-  out.gate.min_q4 = static_cast<std::uint16_t>(below(3) == 0 ? 0 : below(500));
-  out.gate.max_q4 = static_cast<std::uint16_t>(below(3) == 0 ? 65534 : out.gate.min_q4 + below(1000));
-  out.gate.background_tolerance_q4 = below(4) == 0 ? 70000 : below(200) - 50;
-  out.gate.pass_unknown = below(2) == 0;
-  out.window = below(3) == 0 ? Window::all(size)
-                             : Window{below(size.width + 4) - 4, below(size.height + 4) - 4, below(size.width + 8),
-                                      below(size.height + 8)};
-  return out;
-}
-
 TEST(MarkTargets, SimdAgrees) {
   std::mt19937 rng(6);
   Pool one(1), two(2), three(3);
@@ -126,7 +106,7 @@ TEST(MarkTargets, SimdAgrees) {
       for (auto& table : likelihoods)
         for (auto& bin : table) bin = static_cast<std::uint8_t>(rng());
       std::vector<Target> targets(rng() % (kMaxTargets + 1));
-      for (Target& target : targets) target = random_target(rng, size, 2);
+      for (Target& target : targets) target = test::random_target(rng, size, 2);
       MarkTargets in{hue.view, saturation.view, value.view, d.view, background.view, targets, likelihoods};
       if (round % 3 == 1) in.background_q4 = {};
       if (round % 5 == 2) in.d_q4 = {};

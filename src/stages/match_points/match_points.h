@@ -37,7 +37,7 @@ struct PointMatch {
 // Shape    predicted empty or stored.count; matches stored.count
 // Units    square_distance of u8 descriptors: at most 128 * 255^2 < 2^23
 // Threads  stored points are independent
-// Exact    ref and simd agree bit for bit
+// Exact    ref, simd and vk agree bit for bit
 // Source   Lowe, "Distinctive image features from scale-invariant keypoints", 2004, section 7.1 (ratio)
 namespace ref {
 void match_points(const SiftPoints& stored, std::span<const PredictedPlace> predicted, const SiftPoints& seen,

@@ -1,6 +1,6 @@
 #include "stages/match_points/match_points.h"
 
-#include "tests/agree.h"
+#include "tests/sift_points.h"
 
 namespace duo {
 namespace {
@@ -58,21 +58,6 @@ TEST(MatchPoints, PredictionByHand) {
   EXPECT_EQ(matched(points_of({100}), seen, params, far_away)[0].seen, PointMatch::kNone);
 }
 
-/// Descriptors near a few centres, so that ratio and mutual checks go both ways; full range now and then.
-SiftPoints random_points(int count, std::mt19937& rng) {
-  SiftPoints points(count);
-  points.count = count;
-  for (int i = 0; i < count; ++i) {
-    points[i].x_px = static_cast<float>(rng() % 200);
-    points[i].y_px = static_cast<float>(rng() % 200);
-    const unsigned centre = rng() % 7, spread = 1 + rng() % 12;
-    for (int k = 0; k < SiftPoints::kDescriptor; ++k)
-      points.descriptors.at(i, k) =
-          static_cast<std::uint8_t>(centre == 0 ? 255 * (rng() & 1) : centre * 37 * static_cast<unsigned>(k) + rng() % spread);
-  }
-  return points;
-}
-
 TEST(MatchPoints, SimdAgrees) {
   std::mt19937 rng(7);
   Pool one(1), two(2), three(3);
@@ -81,7 +66,7 @@ TEST(MatchPoints, SimdAgrees) {
     for (const int seen_count : {0, 1, 17, 64})
       for (const bool gated : {false, true})
         for (const bool mutual : {false, true}) {
-          const auto stored = random_points(stored_count, rng), seen = random_points(seen_count, rng);
+          const auto stored = test::random_points(stored_count, rng), seen = test::random_points(seen_count, rng);
           std::vector<PredictedPlace> predicted;
           for (int i = 0; gated && i < stored_count; ++i) predicted.push_back({stored[i].x_px, stored[i].y_px});
           MatchPointsParams params;

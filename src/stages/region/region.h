@@ -21,7 +21,7 @@ namespace duo {
 /// Units    1/16 px; window and seed in pixels of the picture
 /// Border   a window ends regions as the picture's border does
 /// Threads  bands in parallel; the result does not depend on them
-/// Exact    ref and simd agree bit for bit
+/// Exact    ref, simd and vk agree bit for bit
 /// Source   connected components by union-find (core/run_forest.h); the cut at depth steps is ours, against walls of skin
 /// colour
 struct Region {

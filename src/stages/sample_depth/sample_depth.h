@@ -14,7 +14,7 @@ namespace duo {
 // Shape    d_q4 H x W
 // Units    1/16 px
 // Threads  rows are independent; counts do not depend on their order
-// Exact    ref and simd agree bit for bit
+// Exact    ref, simd and vk agree bit for bit
 // Source   ours; the median as a location that up to half of the pixels cannot move (Huber, "Robust statistics", 1981). The
 // simd
 //          engine selects by two histograms, of the high bytes and then of the low bytes beside the wanted high ones

@@ -14,7 +14,7 @@ namespace duo {
 /// Shape    hue and d_q4 H x W; either may be empty = not summed
 /// Units    as in AreaSums: 64 bits hold the sums of any picture up to 32768 x 32768
 /// Threads  rows are independent; sums of integers do not depend on their order
-/// Exact    ref and simd agree bit for bit
+/// Exact    ref, simd and vk agree bit for bit
 /// Source   ours; moments after Hu, "Visual pattern recognition by moment invariants", 1962; hue as a mean direction (Mardia,
 ///          "Statistics of directional data", 1972), because plain means break at red
 struct Sums {
@@ -33,7 +33,7 @@ std::optional<std::uint8_t> mean_hue(const AreaSums& sums);
 //
 // Units    px; |from| and |along| below 2^15
 // Threads  rows are independent
-// Exact    ref and simd agree bit for bit
+// Exact    ref, simd and vk agree bit for bit
 // Source   ours; on convex measures a row's outermost pixel is its first or its last one
 namespace ref {
 AreaSums sums(const Sums& in);

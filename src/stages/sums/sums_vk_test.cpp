@@ -1,0 +1,63 @@
+#include "stages/sums/sums_vk.h"
+
+#include "tests/areas.h"
+#include "tests/records_vk.h"
+#include "tests/targets.h"
+
+namespace duo {
+namespace {
+
+TEST(SumsVk, Agrees) {
+  constexpr int kAreas = 6;
+  test::each_device([&](vk::Device& device, const std::string& where) {
+    std::mt19937 rng(12);
+    const auto stage = test::must(vk::Sums::make(device));
+    const auto scratch = test::must(vk::Sums::Scratch::make(device, kAreas));
+    auto recorder = test::must(vk::Recorder::make(device));
+    for (const Size size : {Size{1, 1}, Size{17, 5}, Size{131, 37}, Size{150, 97}})
+      for (const bool whole : {false, true}) {
+        Image<std::uint8_t> marks(size), hue(size);
+        Image<std::uint16_t> d(size);
+        test::fill_marks(marks.view(), rng);
+        test::fill(hue.view(), test::Fill::kRandom, rng);
+        test::fill_disparity(d.view(), rng);
+        const test::OnDevice<std::uint8_t> marks_vk(device, marks, "marks"), hue_vk(device, hue, "hue");
+        const test::OnDevice<std::uint16_t> d_vk(device, d, "disparity");
+        const test::Records<vk::DeviceArea> areas_vk(device, kAreas, "areas");
+        const test::Records<AreaSums> sums_vk(device, kAreas, "sums");
+        vk::Sums::Input in{&areas_vk.buffer(), kAreas};
+        if (!whole) in.marks = marks_vk.view();
+        in.hue = hue_vk.view();
+        if (!whole) in.d_q4 = d_vk.view();
+        recorder.begin();
+        for (const auto* plane : {&marks_vk, &hue_vk}) plane->record_upload(recorder);
+        d_vk.record_upload(recorder);
+        areas_vk.record_upload(recorder);
+        stage.record(recorder, in, scratch, sums_vk.buffer(), size);
+        sums_vk.record_download(recorder);
+        test::must(recorder.end());
+
+        for (int round = 0; round < 4; ++round) {
+          Area areas[kAreas];
+          vk::DeviceArea words[kAreas];
+          for (int i = 0; i < kAreas; ++i) {
+            areas[i] = test::random_area(rng, size, marks);
+            areas[i].marks = whole ? View<const std::uint8_t>() : marks.view();
+            words[i] = vk::device_area(areas[i]);
+          }
+          std::memcpy(areas_vk.bytes().data(), words, sizeof words);
+          test::must(recorder.run());
+          const auto got = sums_vk.read();
+          for (std::size_t i = 0; i < kAreas; ++i) {
+            duo::Sums one{size, areas[i], hue, d};
+            if (whole) one.d_q4 = {};
+            EXPECT_EQ(got[i], ref::sums(one)) << "sums" << where << " " << size.width << "x" << size.height << " area " << i;
+          }
+          if (HasFailure()) return;
+        }
+      }
+  });
+}
+
+}  // namespace
+}  // namespace duo
