@@ -16,7 +16,7 @@ duoptic_stage(match_tiles VULKAN SHADERS match_tiles_channels match_tiles_right)
 target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/stages/match_tiles/channels_simd.cpp)
 duoptic_stage(hsv VULKAN)
 duoptic_stage(erode VULKAN)
-duoptic_stage(sift)
+duoptic_stage(sift VULKAN SHADERS sift_mark sift_lists sift_refine sift_orient sift_describe)
 target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/stages/sift/sift.cpp ${PROJECT_SOURCE_DIR}/src/stages/sift/place.cpp
   ${PROJECT_SOURCE_DIR}/src/stages/sift/histograms_simd.cpp)
 if(DUO_TESTS AND DUO_SLOW_TESTS)

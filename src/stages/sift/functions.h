@@ -44,9 +44,9 @@ inline void cos_sin(double turns, double& cos, double& sin) {
   }
 }
 
-// Arctangent on [0, 1] in turns: z * (kAtan[0] + z^2 * (kAtan[1] + ...)), error below 2e-6 turns.
-// Abramowitz, Stegun 4.4.49 (|error| <= 1e-5 rad), divided by 2 pi.
-constexpr float kAtan[5] = {0.99986598f / 6.28318531f, -0.3302995f / 6.28318531f, 0.180141f / 6.28318531f,
-                            -0.085133f / 6.28318531f, 0.0208351f / 6.28318531f};
+// Arctangent; see there.
+constexpr float kAtan[5] = {
+#include "stages/sift/atan.inc"
+};
 
 }  // namespace duo::sift

@@ -15,6 +15,9 @@ struct BlurKernel {
   int radius;
   float weight[kMostRadius + 1];
 };
+BlurKernel blur_of_picture();                      // from the picture to level 0
+BlurKernel blur_to(int level);                     // from the level below
+float least_difference(const SiftParams& params);  // of an extremum, gray levels
 
 constexpr int kDirections = 36;                 // of the orientation histogram
 constexpr int kCells = 4, kCellDirections = 8;  // of the descriptor

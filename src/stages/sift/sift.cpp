@@ -79,8 +79,8 @@ class Search {
     pool_.rows(size_.height, [&](int begin, int end) {
       for (int y = begin; y < end; ++y) std::copy_n(src.row(y0_ + y) + x0_, size_.width, gray.row(y));
     });
-    blur(gray, kernel_between(kCameraSigma, kSigma), plane(scratch_.blurred[0]), {});
-    for (int level = 1; level < kBlurred; ++level) between_[level] = kernel_between(scale_of(level - 1), scale_of(level));
+    blur(gray, blur_of_picture(), plane(scratch_.blurred[0]), {});
+    for (int level = 1; level < kBlurred; ++level) between_[level] = blur_to(level);
   }
 
   void search_octaves() {
@@ -122,7 +122,7 @@ class Search {
     const int y_end = std::min(size_.height - kBorder, ((window_.y - y0_ + window_.height - 1) >> octave_) + 2);
     if (x_begin >= x_end || y_begin >= y_end) return;
     for (int i = 0; i < kLevels + 2; ++i) differences_[i] = plane(scratch_.difference[i]);
-    const float threshold = 0.5f * params_.contrast / kLevels * 255;
+    const float threshold = least_difference(params_);
     for (int level = 1; level <= kLevels; ++level) {
       const View<const float> three[3] = {differences_[level - 1], differences_[level], differences_[level + 1]};
       const Image<std::uint8_t>& marks = scratch_.marks[level - 1];
@@ -233,6 +233,10 @@ class Search {
 };
 
 }  // namespace
+
+BlurKernel blur_of_picture() { return kernel_between(kCameraSigma, kSigma); }
+BlurKernel blur_to(int level) { return kernel_between(scale_of(level - 1), scale_of(level)); }
+float least_difference(const SiftParams& params) { return 0.5f * params.contrast / kLevels * 255; }
 
 void run(const Kernels& kernels, Pool& pool, View<const std::uint8_t> src, const Window& window, const SiftParams& params,
          SiftScratch& scratch, SiftPoints& out) {

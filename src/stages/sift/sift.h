@@ -55,7 +55,8 @@ class SiftScratch {
 // Border   src continues by its edge pixels; so does the window beyond its margin, which changes coarse octaves near its border
 // Threads  rows and points are independent; the result does not depend on them
 // Exact    ref and simd agree bit for bit: floats are added in one order a pixel, histograms are integers (1/4096 gray levels:
-//          a cell of 11 px squared with gradients of 361 stays below 2^28)
+//          a cell of 11 px squared with gradients of 361 stays below 2^28);
+//          vk nearly always has the same bits: see sift_vk.h
 // Errors   points beyond out.capacity() are dropped, last first, and counted in out.overflow (a place of which not even the
 //          angles are known counts once)
 // Source   Lowe, "Distinctive image features from scale-invariant keypoints", 2004
