@@ -1,6 +1,7 @@
 // Wall and CPU clocks, and the timer that fills Frame::stages.
 #pragma once
 
+#include <cstring>
 #include <ctime>
 
 #include "core/check.h"
@@ -16,6 +17,17 @@ inline std::int64_t clock_ns(clockid_t id) {
 inline std::int64_t wall_ns() { return clock_ns(CLOCK_MONOTONIC); }
 inline std::int64_t cpu_ns() { return clock_ns(CLOCK_PROCESS_CPUTIME_ID); }
 
+/// Adds to the time of a stage; stages that find no place any more are left out.
+inline void add_time(decltype(Frame::stages)& times, const char* stage, std::int64_t wall_ns, std::int64_t cpu_ns) {
+  for (StageTime& t : times) {
+    if (t.wall_ns != 0 && std::strcmp(t.stage, stage) != 0) continue;
+    t.stage = stage;
+    t.wall_ns += wall_ns > 0 ? wall_ns : 1;
+    t.cpu_ns += cpu_ns;
+    return;
+  }
+}
+
 /// Adds up the time of each stage of a frame; does nothing while off.
 class StageTimer {
  public:
@@ -28,14 +40,7 @@ class StageTimer {
   /// Ends the stage that ran since the last call.
   void stage(const char* name) {
     if (times_ == nullptr) return;
-    const std::int64_t wall = wall_ns() - wall_, cpu = cpu_ns() - cpu_;
-    for (StageTime& t : *times_) {
-      if (t.wall_ns != 0 && t.stage != name) continue;
-      t.stage = name;
-      t.wall_ns += wall > 0 ? wall : 1;
-      t.cpu_ns += cpu;
-      break;
-    }
+    add_time(*times_, name, wall_ns() - wall_, cpu_ns() - cpu_);
     mark();
   }
 

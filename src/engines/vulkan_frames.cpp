@@ -6,11 +6,12 @@
 #include <cstring>
 
 #include "core/check.h"
+#include "core/clock.h"
 
 namespace duo::vk {
 namespace {
 
-constexpr int kMostStages = static_cast<int>(std::tuple_size_v<decltype(Frame::stages)>);
+constexpr int kMostParts = 96;  // stages of all levels of a pyramid
 
 // Maps lie without gaps between their rows: they travel as they are.
 template <class T>
@@ -118,7 +119,7 @@ Result<void> Frames::make_slot(Slot& slot) {
   const Wants& wants = prepared_.setup.wants;
   DUO_TRY_ASSIGN(Recorder recorder, Recorder::make(device_));
   slot.recorder.emplace(std::move(recorder));
-  DUO_TRY_ASSIGN(slot.timer, Timer::make(device_, kMostStages));
+  DUO_TRY_ASSIGN(slot.timer, Timer::make(device_, kMostParts));
   for (Buffer& raw : slot.raw) DUO_TRY(make_map<Rgb8>(device_, "pictures up", prepared_.setup.size, raw, Memory::kUpload));
   const auto make = [&]<class T>(T, bool wanted, const char* name, Buffer& out) -> Result<void> {
     return wanted ? make_map<T>(device_, name, size, out, Memory::kDownload) : Result<void>{};
@@ -133,12 +134,11 @@ Result<void> Frames::make_slot(Slot& slot) {
 }
 
 Result<void> Frames::record(Slot& slot) {
-  slot.recorder->begin();
-  slot.timer.start(*slot.recorder);
+  slot.recorder->begin(prepared_.setup.time_stages ? &slot.timer : nullptr);
   const auto [left, right] = record_views(slot);
   record_depth(slot, left, right);
   record_downloads(slot, left, right);
-  slot.timer.stage(*slot.recorder, "download");
+  slot.recorder->stage("download");
   return slot.recorder->end();
 }
 
@@ -149,7 +149,7 @@ std::array<BufferView<std::uint8_t>, 2> Frames::record_views(Slot& slot) {
   const Size raw = prepared_.setup.size;
   const auto each = [&](const char* stage, auto&& f) {
     for (std::size_t i = 0; i < views_.size(); ++i) f(i);
-    slot.timer.stage(recorder, stage);
+    recorder.stage(stage);
   };
   std::array<BufferView<std::uint8_t>, 2> now, next;
   each("upload", [&](std::size_t i) { recorder.copy(slot.raw[i], views_[i].raw, slot.raw[i].bytes()); });
@@ -187,12 +187,11 @@ void Frames::record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<
     pair.left_inside = whole<std::uint8_t>(views_[0].inside, size),
     pair.right_inside = whole<std::uint8_t>(views_[1].inside, size);
   std::get<Pyramid>(matcher_).record(recorder, pair, d_q4);
-  slot.timer.stage(recorder, "match");
   fill_.record_measured(recorder, d_q4, origin, size);
-  slot.timer.stage(recorder, "fill");
+  recorder.stage("fill");
   if (depth_) {
     depth_->record(recorder, d_q4, whole<std::uint16_t>(depth_mm_, size), size);
-    slot.timer.stage(recorder, "depth");
+    recorder.stage("depth");
   }
 }
 
@@ -203,7 +202,7 @@ void Frames::record_downloads(Slot& slot, BufferView<std::uint8_t> left, BufferV
     const Size size = prepared_.size;
     rectify_.record(recorder, whole<Rgb8>(views_[0].raw, prepared_.setup.size), map_of(views_[0]), whole<Rgb8>(color_, size),
                     size);
-    slot.timer.stage(recorder, "color");
+    recorder.stage("color");
   }
   const auto down = [&](const Buffer& from, const Buffer& to) {
     if (to.bytes() > 0) recorder.copy(from, to, std::min(from.bytes(), to.bytes()));
@@ -244,8 +243,7 @@ Result<void> Frames::collect(int slot, Frame& frame) {
   frame.stages = {};
   if (!prepared_.setup.time_stages) return {};
   DUO_TRY_ASSIGN(const auto times, at.timer.read());
-  for (std::size_t i = 0; i < times.size(); ++i)
-    frame.stages[i] = {times[i].stage, std::max<std::int64_t>(1, static_cast<std::int64_t>(times[i].ns)), 0};
+  for (const Timer::Time& t : times) add_time(frame.stages, t.stage, static_cast<std::int64_t>(t.ns), 0);
   return {};
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "vulkan/timer.h"
+
 namespace duo::vk {
 namespace {
 
@@ -34,7 +36,8 @@ Recorder::~Recorder() {
   if (command_pool_.get() != VK_NULL_HANDLE && last_ != 0) (void)device_->wait(last_);
 }
 
-void Recorder::begin() {
+void Recorder::begin(Timer* timer) {
+  timer_ = timer;
   if (!device_->finished(last_)) {
     failed_ = device_->error("recording anew", VK_NOT_READY);
     return;
@@ -51,6 +54,11 @@ void Recorder::begin() {
     return;
   }
   barrier(kStages, kReads | kWrites);  // submissions of one queue overlap unless told otherwise
+  if (timer_ != nullptr) timer_->start(*this);
+}
+
+void Recorder::stage(const char* name) {
+  if (timer_ != nullptr) timer_->stage(*this, name);
 }
 
 bool Recorder::bind(const Kernel& kernel, std::span<const std::byte> push, std::span<const Use> uses,

@@ -34,6 +34,8 @@ inline Size groups_for(Size size) {
   return {(size.width + kGroupWidth - 1) / kGroupWidth, (size.height + kGroupHeight - 1) / kGroupHeight};
 }
 
+class Timer;
+
 /// Records commands; puts a barrier before each that needs the results, or overwrites the inputs, of those before it.
 /// Recording cannot fail on the spot: the first error is kept, and end() returns it.
 ///
@@ -46,7 +48,11 @@ class Recorder {
   ~Recorder();  // waits for its work
 
   /// Starts anew. An error, like that of submit() and run(), if the work recorded before is not finished.
-  void begin();
+  ///
+  /// `timer`: gets the time of each stage(); must outlive the recording
+  void begin(Timer* timer = nullptr);
+  /// Ends the part that was recorded since the last call; `name` lives as long as the timer.
+  void stage(const char* name);
   /// Runs `kernel` in `groups` workgroups; the order of `uses` is that of the kernel's bindings.
   template <class Push>
   void dispatch(const Kernel& kernel, const Push& push, std::initializer_list<Use> uses, Size groups) {
@@ -97,6 +103,7 @@ class Recorder {
   std::vector<OwnedSetPool> descriptor_pools_;
   std::vector<Set> sets_;       // every set of this recording; a set lives as long as the recording
   std::vector<Use> unordered_;  // uses since the last barrier
+  Timer* timer_ = nullptr;
   Result<void> failed_;
   Ticket last_ = 0;
 };

@@ -8,7 +8,7 @@
 
 namespace duo::vk {
 
-/// Used like StageTimer: start() after Recorder::begin(), stage() after each part, read() once the work is finished.
+/// Given to Recorder::begin(); read() once the work is finished.
 class Timer {
  public:
   struct Time {
@@ -18,16 +18,16 @@ class Timer {
   /// Errors  out of memory
   static Result<Timer> make(const Device& device, int stages);
 
-  void start(Recorder& recorder);
-  /// Ends the part that was recorded since the last call; at most as many as given to make().
-  /// `name` lives as long as the timer.
-  void stage(Recorder& recorder, const char* name);
-  /// Valid until the next read(), which allocates nothing.
+  /// The parts in their order. Valid until the next read(), which allocates nothing.
   ///
   /// Errors  the work is not finished
   Result<std::span<const Time>> read();
 
  private:
+  friend class Recorder;
+  void start(Recorder& recorder);
+  /// At most as many as given to make().
+  void stage(Recorder& recorder, const char* name);
   void stamp(Recorder& recorder, std::size_t index);
 
   const Device* device_ = nullptr;

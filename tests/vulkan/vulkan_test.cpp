@@ -208,12 +208,11 @@ TEST(Timer, TimesEachPart) {
     const OnDevice<std::uint8_t> a(device, test::constant<std::uint8_t>(size, 1), "a"), b(device, size, "b");
     auto timer = must(vk::Timer::make(device, 2));
     auto recorder = must(vk::Recorder::make(device));
-    recorder.begin();
-    timer.start(recorder);
+    recorder.begin(&timer);
     a.record_upload(recorder);
-    timer.stage(recorder, "upload");
+    recorder.stage("upload");
     median.record(recorder, a.view(), b.view(), size);
-    timer.stage(recorder, "median");
+    recorder.stage("median");
     must(recorder.end());
     must(recorder.run());
     const auto times = must(timer.read());

@@ -19,7 +19,8 @@ BufferView<T> whole(const Buffer& buffer, Size size) {
 
 Result<Pyramid> Pyramid::make(const Device& device, const PyramidParams& params, const MatchSetup& setup) {
   if (params.search == PyramidParams::Search::kTiles && params.speckle > 0)
-    return Error{ErrorCode::kUnsupported, "set up matcher pyramid on a device: islands are not removed there yet; use speckle=0"};
+    return Error{ErrorCode::kUnsupported,
+                 "set up matcher pyramid on a device: islands are not removed there yet; use speckle=0"};
   Pyramid out;
   out.params_ = params;
   out.masked_ = setup.masked;
@@ -86,6 +87,7 @@ Pyramid::Input Pyramid::pair_of(const Input& full, std::size_t level) const {
 void Pyramid::record(Recorder& recorder, const Input& pair, BufferView<std::uint16_t> d_q4) const {
   DUO_CHECK(masked_ != pair.left_inside.absent());
   record_halving(recorder, pair);
+  recorder.stage("halve");
   around_ ? record_around(recorder, pair, d_q4) : record_tiles(recorder, pair, d_q4);
 }
 
@@ -112,8 +114,10 @@ void Pyramid::record_around(Recorder& recorder, const Input& pair, BufferView<st
                           size);
     coarser = winner;
   }
+  recorder.stage("match_around");
   const auto& [size, max_disparity] = levels_[0].shape;
   around_->mark_invalid.record(recorder, {coarser, pair.left_inside, pair.right_inside, max_disparity}, d_q4, size);
+  recorder.stage("mark_invalid");
 }
 
 void Pyramid::record_tiles(Recorder& recorder, const Input& pair, BufferView<std::uint16_t> d_q4) const {
@@ -126,6 +130,7 @@ void Pyramid::record_tiles(Recorder& recorder, const Input& pair, BufferView<std
     tiles_->match.record(recorder, tiles_input(pair, i), tiles_params(i), level.scratch,
                          {whole<std::int16_t>(level.left_winner, size), whole<std::int16_t>(level.right_winner, size),
                           whole<std::uint16_t>(level.fine, size)});
+    recorder.stage("match_tiles");
     if (i > 0) record_candidates(recorder, pair, i);
   }
   record_checked(recorder, pair, d_q4);
@@ -158,6 +163,7 @@ void Pyramid::record_candidates(Recorder& recorder, const Input& pair, std::size
   const auto& [finer_size, max_disparity] = levels_[coarser - 1].shape;
   tiles_->candidates.record(recorder, {checked, left, params_.grow, params_.margin}, sets_of(coarser - 1), finer_size,
                             max_disparity);
+  recorder.stage("tile_candidates");
 }
 
 void Pyramid::record_checked(Recorder& recorder, const Input& pair, BufferView<std::uint16_t> d_q4) const {
@@ -169,7 +175,9 @@ void Pyramid::record_checked(Recorder& recorder, const Input& pair, BufferView<s
   const auto left = whole<std::int16_t>(full.left_winner, size), right = whole<std::int16_t>(full.right_winner, size);
   tiles_->check.record(recorder, {left, right, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach},
                        whole<std::uint16_t>(full.fine, size), now, size);
+  recorder.stage("check_left_right");
   for (int i = 0; i < params_.medians; ++i, std::swap(now, next)) tiles_->median.record(recorder, now, next, size);
+  recorder.stage("median");
 }
 
 }  // namespace duo::vk
