@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "bench_device.h"
 #include "command.h"
 #include "duoptic/synthetic.h"
 #include "peers.h"
@@ -19,10 +20,14 @@ constexpr char kFooter[] =
     "The pair is our synthetic room seen by two distorted, noisy cameras. A whole frame goes from decoded pictures to depth:\n"
     "denoise, rectify, match, check, fill, depth. OpenCV gets the same rectified pair; its time is its matching call alone, "
     "and is\n"
-    "compared with our whole frame and with our matching alone. All contestants take turns in one process; medians.\n\n"
+    "compared with our whole frame and with our matching alone. All contestants take turns in one process; medians.\n"
+    "On a device: GPU time of each stage, latency from pictures in memory to the frame, CPU time of the calling thread, "
+    "frames/s\n"
+    "with two pairs in flight, bytes each way, with and without maps sent back; and how fast the device copies.\n\n"
     "Examples:\n"
     "  duoptic bench\n"
-    "  duoptic bench --engine simd --size 640x480 --repeat 31 --json";
+    "  duoptic bench --engine simd --size 640x480 --repeat 31 --json\n"
+    "  duoptic bench --engine vulkan";
 
 constexpr int kMaxDisparity = 128;
 // What a whole frame does beside matching.
@@ -124,6 +129,8 @@ Result<Table> measure(const SyntheticPair& input, int threads, const Options& op
   return table;
 }
 
+bool on_device(const std::string& engine) { return engine == "vulkan" || engine.starts_with("vulkan:"); }
+
 nlohmann::json to_json(Times t) { return {{"wall_ms", t.wall_ms}, {"cpu_ms", t.cpu_ms}}; }
 
 nlohmann::json to_json(const Table& table) {
@@ -186,6 +193,13 @@ Result<Exit> run(const Options& options) {
   for (const Size size : {Size{640, 480}, Size{1280, 720}}) {
     if (options.size != "both" && options.size != fmt::format("{}x{}", size.width, size.height)) continue;
     const SyntheticPair input = render_synthetic({.size = size}, 2);
+    if (on_device(options.engine)) {
+      DeviceBench bench{options.engine, &input, {}, kMaxDisparity, options.repeat, options.json};
+      for (const Choice& choice : kChoices) bench.choices.emplace_back(choice.matcher, choice.preset);
+      DUO_TRY_ASSIGN(nlohmann::json table, device_table(bench));
+      out.push_back(std::move(table));
+      continue;
+    }
     for (const int threads : {1, 2}) {
       DUO_TRY_ASSIGN(const Table table, measure(input, threads, options));
       if (options.json)
@@ -205,7 +219,12 @@ Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("bench", "Speed of each stage and of whole frames, beside OpenCV");
   const auto options = std::make_shared<Options>();
   sub->add_option("--engine", options->engine, "Which of our engines")
-      ->check(CLI::IsMember({"both", "ref", "simd"}))
+      ->check(CLI::Validator(
+          [](std::string& name) {
+            const bool known = name == "both" || name == "ref" || name == "simd" || on_device(name);
+            return known ? std::string() : fmt::format("no engine is called \"{}\"", name);
+          },
+          "both|ref|simd|vulkan[:DEVICE]"))
       ->capture_default_str();
   sub->add_option("--size", options->size, "Size of the pictures")
       ->check(CLI::IsMember({"both", "640x480", "1280x720"}))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "duoptic/result.h"
@@ -18,5 +19,16 @@ struct DeviceInfo {
 ///
 /// Errors  built without Vulkan, no loader, no driver, no device: the reason in one line
 Result<std::vector<DeviceInfo>> vulkan_devices();
+
+/// What copying reaches on a device and between it and the CPU, in GB (1e9 bytes) a second; on the device, what is read and
+/// what is written both count.
+struct DeviceSpeed {
+  double copy_gb_s = 0, up_gb_s = 0, down_gb_s = 0;
+};
+
+/// Measures the device of this index or with this in its name, as Engine::device() says it.
+///
+/// Errors  no such device, device lost
+Result<DeviceSpeed> measure_device(std::string_view wanted);
 
 }  // namespace duo

@@ -1,0 +1,90 @@
+// `duoptic devices`, and the tool's engine on one of them: the software driver here, whose answers are those of any.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tool.h"
+
+namespace duo {
+namespace {
+
+constexpr int kInput = 4;
+constexpr char kDevice[] = " --engine vulkan:llvmpipe";
+
+class Devices : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const char* none = std::getenv("DUOPTIC_NO_VULKAN"); none != nullptr && std::string(none) == "1")
+      GTEST_SKIP() << "skipped: no Vulkan";
+  }
+  test::Ended run(const std::string& arguments) const { return test::run_tool(folder_ / "", arguments); }
+
+  /// A clip of the rendered person in `folder_`, and the clicks on its arm.
+  std::string make_clip() const {
+    const test::Ended made = run("synth --quiet --frames 6 --size 320x240 -o clip");
+    EXPECT_EQ(made.exit, 0) << made.err;
+    const auto truth = nlohmann::json::parse(test::bytes_of(folder_ / "clip/truth.json"));
+    const std::string side = truth["meta"]["selected_arm"].get<std::string>() + "_";
+    std::string clicks;
+    for (const std::string joint : {"hand", "elbow", "shoulder"}) {
+      const auto& uv = truth["frames"][0]["joints"][side + joint]["uv_left"];
+      clicks += " --select " + joint + "=" + uv[0].dump() + "," + uv[1].dump();
+    }
+    return "track clip/left.avi clip/right.avi --rig clip/calibration_truth.yml" + clicks;
+  }
+
+  test::TempFolder folder_;
+};
+
+TEST_F(Devices, ListsThem) {
+  const auto all = run("devices --json").json();
+  ASSERT_FALSE(all.empty());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i]["index"], i);
+    EXPECT_FALSE(all[i]["name"].get<std::string>().empty());
+    EXPECT_TRUE(all[i]["lacks"].is_array());
+  }
+  const test::Ended text = run("devices");
+  EXPECT_EQ(text.exit, 0);
+  EXPECT_NE(text.out.find(all[0]["name"]), std::string::npos) << text.out;
+}
+
+TEST_F(Devices, SayWhichOnesThereAreWhenTheWantedOneIsNot) {
+  make_clip();
+  for (const char* engine : {"vulkan:no such card", "vulkan:99"}) {
+    const test::Ended ended = run(
+        std::string("depth clip/left.avi clip/right.avi --rig clip/calibration_truth.yml -o out --engine '") + engine + "'");
+    EXPECT_EQ(ended.exit, kInput);
+    EXPECT_NE(ended.err.find("there are 0: "), std::string::npos) << ended.err;
+    EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+  }
+}
+
+std::vector<nlohmann::json> lines(const std::string& text) {
+  std::vector<nlohmann::json> out;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) out.push_back(nlohmann::json::parse(line));
+  return out;
+}
+
+TEST_F(Devices, TrackLikeTheCpu) {
+  const std::string track = make_clip();
+  for (const char* preset : {" --preset default", " --preset thesis --tracker-preset thesis"}) {
+    const test::Ended cpu = run(track + preset + " --engine simd"), device = run(track + preset + kDevice);
+    ASSERT_EQ(cpu.exit, 0) << cpu.err;
+    ASSERT_EQ(device.exit, 0) << device.err;
+    EXPECT_EQ(device.err, "") << "nothing was taken over by the CPU";
+    const auto want = lines(cpu.out), got = lines(device.out);
+    ASSERT_EQ(want.size(), 7u);
+    ASSERT_EQ(got.size(), want.size());
+    EXPECT_EQ(got[0]["engine"], "vulkan");
+    EXPECT_NE(got[0]["device"].get<std::string>().find("llvmpipe"), std::string::npos);
+    EXPECT_TRUE(want[0]["device"].is_null());
+    for (std::size_t i = 1; i < want.size(); ++i) EXPECT_EQ(want[i], got[i]) << preset << ": to the last digit";
+  }
+}
+
+}  // namespace
+}  // namespace duo
