@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "core/check.h"
 #include "stages/balance/balance.h"
@@ -23,19 +22,47 @@ BrightnessSums brightness_sums(View<const std::uint8_t> picture, View<const std:
   return out;
 }
 
+namespace {
+
+/// The whole part of the square root, bit by bit.
+std::uint64_t whole_root(std::uint64_t v) {
+  std::uint64_t root = 0;
+  for (int bit = 30; bit >= 0; --bit) {
+    const std::uint64_t longer = root | std::uint64_t{1} << bit;
+    if (longer * longer <= v) root = longer;
+  }
+  return root;
+}
+
+/// Standard deviation, rounded down; below 2^31. With up to 2^23 pixels count^2 V = count squares - sum^2 is below 2^60 and
+/// count^2 at most 2^46, so each step of the long division, 16 bits of the fraction, stays below 2^62.
+std::uint64_t deviation_q24(const BrightnessSums& s) {
+  const auto square = static_cast<std::uint64_t>(s.count * s.count);
+  auto rest = static_cast<std::uint64_t>(s.squares * s.count - s.sum * s.sum);
+  std::uint64_t variance_q48 = rest / square;  // below 2^14
+  for (int step = 0; step < 3; ++step) {
+    rest = rest % square << 16;
+    variance_q48 = variance_q48 << 16 | rest / square;
+  }
+  return whole_root(variance_q48);
+}
+
+std::int64_t mean_q16(const BrightnessSums& s) { return ((s.sum << 16) + s.count / 2) / s.count; }
+
+}  // namespace
+
 std::array<std::uint8_t, 256> balance_table(const BrightnessSums& left, const BrightnessSums& right) {
-  const auto mean = [](const BrightnessSums& s) {
-    return s.count == 0 ? 0.0 : static_cast<double>(s.sum) / static_cast<double>(s.count);
-  };
-  // Times count^2, and exact in integers: below 2^63 for up to 2^23 pixels.
-  const auto variance = [](const BrightnessSums& s) { return static_cast<double>(s.squares * s.count - s.sum * s.sum); };
-  double gain = 1;
-  if (left.count > 0 && right.count > 0 && variance(left) > 0 && variance(right) > 0)
-    gain = std::sqrt(variance(left) / variance(right)) * static_cast<double>(right.count) / static_cast<double>(left.count);
-  const double offset = left.count > 0 && right.count > 0 ? mean(left) - gain * mean(right) : 0;
+  std::int64_t gain_q16 = 1 << 16, offset_q16 = 0;
+  if (left.count > 0 && right.count > 0) {
+    const std::uint64_t from = deviation_q24(right), to = deviation_q24(left);
+    // One pixel of 2^23 that differs gives a deviation of 2^-12: the gain is below 2^19, and its products below 2^59.
+    if (from > 0 && to > 0) gain_q16 = static_cast<std::int64_t>(((to << 16) + from / 2) / from);
+    offset_q16 = mean_q16(left) - ((gain_q16 * mean_q16(right) + (1 << 15)) >> 16);
+  }
   std::array<std::uint8_t, 256> table{};
   for (int v = 0; v < 256; ++v)
-    table[static_cast<std::size_t>(v)] = static_cast<std::uint8_t>(std::clamp(std::floor(gain * v + offset + 0.5), 0.0, 255.0));
+    table[static_cast<std::size_t>(v)] =
+        static_cast<std::uint8_t>(std::clamp<std::int64_t>((gain_q16 * v + offset_q16 + (1 << 15)) >> 16, 0, 255));
   return table;
 }
 

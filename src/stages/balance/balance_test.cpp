@@ -36,6 +36,28 @@ TEST(Balance, NothingInsideChangesNothing) {
   test::expect_same<std::uint8_t>(right, dst, "balance none");
 }
 
+// By hand: left 0 .. 255 of one pixel each; right only 100 and 101, deviation 1/2 and mean 100 1/2. Deviation of the left
+// sqrt((256^2 - 1) / 12) = 73.9002, mean 127 1/2: gain 147.8004, 100 becomes 53.6, 101 becomes 201.4, and all else is cut.
+TEST(Balance, LargeGainIsCut) {
+  Image<std::uint8_t> left({16, 16}), right(left.size());
+  for (int i = 0; i < 256; ++i)
+    left.at(i / 16, i % 16) = static_cast<std::uint8_t>(i), right.at(i / 16, i % 16) = static_cast<std::uint8_t>(100 + i % 2);
+  const auto table = balance_table(brightness_sums(left, {}, 0, 16), brightness_sums(right, {}, 0, 16));
+  EXPECT_EQ(table[99], 0);
+  EXPECT_EQ(table[100], 54);
+  EXPECT_EQ(table[101], 201);
+  EXPECT_EQ(table[102], 255);
+}
+
+// As many pixels as there may be, black and white on the left, one that differs on the right: nothing wraps.
+TEST(Balance, SumsAtTheBounds) {
+  constexpr std::int64_t kMost = 1 << 23;
+  const BrightnessSums half{kMost, kMost / 2 * 255, kMost / 2 * 255 * 255}, one{kMost, 1, 1};
+  EXPECT_EQ(balance_table(half, one)[0], 128);  // 127.5, as the mean of the right one rounds to 0
+  EXPECT_EQ(balance_table(half, one)[1], 255);
+  EXPECT_EQ(balance_table(one, half)[255], 0);
+}
+
 TEST(Balance, SimdAgrees) {
   std::mt19937 rng(5);
   Pool two(2);
