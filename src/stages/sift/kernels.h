@@ -61,7 +61,8 @@ struct Kernels {
 void run(const Kernels& kernels, Pool& pool, View<const std::uint8_t> src, const Window& window, const SiftParams& params,
          SiftScratch& scratch, SiftPoints& out);
 
-constexpr int kBorder = 5;  // px of an octave without extrema
+constexpr int kBorder = 5;           // px of an octave without extrema
+constexpr int kSmallestOctave = 12;  // px; below, its border covers it
 
 struct Pixel {
   int level, y, x;

@@ -28,7 +28,6 @@ namespace {
 
 constexpr int kLevels = SiftScratch::kLevels, kBlurred = kLevels + 3;
 constexpr double kSigma = 1.6, kCameraSigma = 0.5;  // px
-constexpr int kSmallestOctave = 12;                 // px; below, its border covers it
 
 BlurKernel make_kernel(double sigma) {
   BlurKernel kernel;

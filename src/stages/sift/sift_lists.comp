@@ -14,7 +14,7 @@ layout(push_constant) uniform Push { SiftPointPush p; };
 
 const int kMostOctaves = 8;
 shared int lane_counts[kSiftLanes];
-shared uint good[kSiftMostCandidates / 32];
+shared uint good[kSiftMostCandidates / 32 + 1];
 shared int octave_first[kMostOctaves + 1], octave_kept[kMostOctaves + 1];
 
 SiftWork lists;

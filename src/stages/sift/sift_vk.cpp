@@ -26,8 +26,8 @@ constexpr std::uint32_t kSiftOrientCode[] = {
 constexpr std::uint32_t kSiftDescribeCode[] = {
 #include "spirv/sift_describe.comp.inc"
 };
-static_assert(kSiftLevels == SiftScratch::kLevels && kSiftBorder == sift::kBorder &&
-              kSiftMostAngles == SiftScratch::kMostAngles);
+static_assert(kSiftLevels == SiftScratch::kLevels && kSiftMostAngles == SiftScratch::kMostAngles);
+static_assert(kSiftBorder == sift::kBorder && kSiftSmallest == sift::kSmallestOctave && kSiftFixed == sift::kFixed);
 static_assert(sizeof(Window) == 16);  // kernels read windows as they are
 
 constexpr int kCandidatesPerPoint = 4;

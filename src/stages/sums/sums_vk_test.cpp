@@ -59,5 +59,28 @@ TEST(SumsVk, Agrees) {
   });
 }
 
+// Sums beyond 32 bits, without any picture.
+TEST(SumsVk, HoldsLargePictures) {
+  constexpr Size kSize{1201, 900};
+  const Area area{Window::all(kSize), {700, 400, 850}};
+  const AreaSums want = ref::sums({kSize, area});
+  ASSERT_GT(want.xx, std::int64_t{1} << 37);
+  test::each_device([&](vk::Device& device, const std::string& where) {
+    const auto stage = test::must(vk::Sums::make(device));
+    const auto scratch = test::must(vk::Sums::Scratch::make(device, 1));
+    auto recorder = test::must(vk::Recorder::make(device));
+    const vk::DeviceArea words = vk::device_area(area);
+    const test::Records<vk::DeviceArea> areas(device, std::span(&words, 1), "areas");
+    const test::Records<AreaSums> sums(device, 1, "sums");
+    recorder.begin();
+    areas.record_upload(recorder);
+    stage.record(recorder, {&areas.buffer(), 1}, scratch, sums.buffer(), kSize);
+    sums.record_download(recorder);
+    test::must(recorder.end());
+    test::must(recorder.run());
+    EXPECT_EQ(sums.read()[0], want) << where;
+  });
+}
+
 }  // namespace
 }  // namespace duo
