@@ -25,6 +25,7 @@ Error none(std::span<const PhysicalDevice> devices, std::string_view what) {
   std::string there;
   for (std::size_t i = 0; i < devices.size(); ++i)
     there += fmt::format("{}{}: {} ({})", i == 0 ? "" : ", ", i, devices[i].info.name, devices[i].info.type);
+  if (there.empty()) there = "none";
   return {ErrorCode::kNotFound, fmt::format("choosing a Vulkan device: {}; there are {}: name one of them, as in "
                                             "--engine vulkan:0, or use a CPU engine",
                                             what, there)};

@@ -6,7 +6,9 @@
 #include "stages/median/median_vk.h"
 #include "stages/rectify/rectify_vk.h"
 #include "tests/agree_vk.h"
+#include "vulkan/choose.h"
 #include "vulkan/pipeline_cache.h"
+#include "vulkan/speed.h"
 #include "vulkan/timer.h"
 
 namespace duo {
@@ -44,6 +46,34 @@ TEST(Vulkan, RefusesDeviceThatLacksSomething) {
   const auto device = vk::Device::make(instance, physical);
   ASSERT_FALSE(device.has_value());
   EXPECT_NE(device.error().what.find("synchronization2, a compute queue"), std::string::npos) << device.error().what;
+}
+
+vk::PhysicalDevice made_up(const char* name, const char* type, std::vector<std::string> lacks = {}) {
+  vk::PhysicalDevice out;
+  out.info.name = name;
+  out.info.type = type;
+  out.info.lacks = std::move(lacks);
+  return out;
+}
+
+TEST(Vulkan, ChoosesTheCardAndNeverASoftwareDriverUnasked) {
+  const std::vector<vk::PhysicalDevice> devices = {made_up("llvmpipe", "software"), made_up("Intel UHD", "integrated"),
+                                                   made_up("Old Radeon", "discrete", {"shaderInt64"}),
+                                                   made_up("GeForce RTX", "discrete"), made_up("GeForce GT", "discrete")};
+  const auto name = [&](std::string_view wanted, std::size_t of = 5) {
+    const auto chosen = vk::choose_device(std::span(devices).first(of), wanted);
+    return chosen ? chosen->info.name : chosen.error().what;
+  };
+  EXPECT_EQ(name(""), "GeForce RTX") << "the first of the best that lacks nothing";
+  EXPECT_EQ(name("", 3), "Intel UHD");
+  EXPECT_NE(name("", 1).find("there are 0: llvmpipe (software)"), std::string::npos) << name("", 1);
+  EXPECT_EQ(name("0"), "llvmpipe");
+  EXPECT_EQ(name("LLVM"), "llvmpipe");
+  EXPECT_EQ(name("gt"), "GeForce GT");
+  EXPECT_NE(name("radeon").find("lacks shaderInt64"), std::string::npos) << name("radeon");
+  EXPECT_NE(name("5").find("none is \"5\""), std::string::npos) << name("5");
+  EXPECT_NE(name("1x").find("none is \"1x\""), std::string::npos) << name("1x");
+  EXPECT_NE(name("", 0).find("no graphics card"), std::string::npos) << name("", 0);
 }
 
 TEST(Vulkan, RefusesBufferOverTheLimit) {
@@ -90,6 +120,16 @@ TEST(Vulkan, BuffersShareMemory) {
     EXPECT_EQ(allocations, 2 * round) << "mapped and not, once a round, as all were gone in between";
   }
   EXPECT_TRUE(instance->messages().empty());
+}
+
+TEST(Vulkan, MeasuresHowFastADeviceCopies) {
+  test::each_device([](vk::Device& device, const std::string&) {
+    const DeviceSpeed speed = must(vk::copy_speed(device));
+    for (const double gb_s : {speed.copy_gb_s, speed.up_gb_s, speed.down_gb_s}) {
+      EXPECT_GT(gb_s, 0.05);
+      EXPECT_LT(gb_s, 1e5);
+    }
+  });
 }
 
 TEST(PipelineCache, BringsBackOnlyWhatItWrote) {
