@@ -30,6 +30,7 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   const DeviceInfo& info() const { return physical_.info; }
+  int least_subgroup_size() const { return physical_.least_subgroup_size; }
   /// Errors  not finished within `timeout_ns`, after which it is not waited for again; device lost
   Result<void> wait(Ticket ticket, std::int64_t timeout_ns = kWaitNs) const;
   bool finished(Ticket ticket) const;

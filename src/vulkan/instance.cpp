@@ -166,13 +166,15 @@ PhysicalDevice Instance::inspect(VkPhysicalDevice handle) const {
   need(basic.apiVersion >= VK_API_VERSION_1_3, "Vulkan 1.3");
   if (basic.apiVersion < VK_API_VERSION_1_3) return out;  // what follows cannot be asked of it
 
-  auto driver = structure<VkPhysicalDeviceVulkan12Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES);
+  auto sizes = structure<VkPhysicalDeviceVulkan13Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES);
+  auto driver = structure<VkPhysicalDeviceVulkan12Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES, &sizes);
   auto subgroup =
       structure<VkPhysicalDeviceVulkan11Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES, &driver);
   auto properties = structure<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroup);
   fn_.vkGetPhysicalDeviceProperties2(handle, &properties);
   out.info.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
   out.info.subgroup_size = static_cast<int>(subgroup.subgroupSize);
+  out.least_subgroup_size = static_cast<int>(sizes.minSubgroupSize);
 
   constexpr VkSubgroupFeatureFlags kSubgroup = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_VOTE_BIT |
                                                VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT |
