@@ -58,7 +58,8 @@ int distance_from_seen(int i, int j) {
 
 void find_nearest(int lane, int i) {
   int best = kFar, index = kNone, second = kFar;  // of this invocation's candidates
-  for (int j = lane; j < seen_count(); j += kLanes) {
+  const int count = seen_count();
+  for (int j = lane; j < count; j += kLanes) {
     const int d = distance_from_stored(i, j);
     if (d < best) {
       second = best;
@@ -82,7 +83,8 @@ void find_nearest(int lane, int i) {
 }
 
 void check_mutual(int lane, int i, ivec2 match) {
-  for (int k = lane; k < stored_count(); k += kLanes) {
+  const int count = stored_count();
+  for (int k = lane; k < count; k += kLanes) {
     const int d = distance_from_seen(k, match.x);
     if (d < match.y || (d == match.y && k < i)) atomicOr(refused, 1);
   }

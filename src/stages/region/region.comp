@@ -15,7 +15,8 @@
 // Moves about 40 bytes a pixel of each window (marks, labels and counts, written once and read three times) and 2 W H; 120
 // operations a pixel. Atomics only where runs meet: a compact region of n rows has about n.
 // Playne, Hawick, "A new algorithm for parallel connected-component labelling on GPUs", 2018 (joining by atomic minimum);
-// Hennequin, Lacassagne, Cabaret, Meunier, "A new direct connected component labeling and analysis algorithm for GPUs", 2018 (runs).
+// Hennequin, Lacassagne, Cabaret, Meunier, "A new direct connected component labeling and analysis algorithm for GPUs", 2018
+// (runs).
 layout(local_size_x = kRegionLanes) in;
 layout(std430, binding = 0) readonly buffer Tasks { RegionTask tasks[]; };
 layout(std430, binding = 1) buffer Marks { uint8_t marks[]; };

@@ -138,7 +138,8 @@ void main() {
     add_sample(gradient, value_at(gradient.x, from.y, from.x), column, row, turns);
   }
   barrier();
-  write_descriptor(lane, sift_descriptor(SiftListShape(p.shape.windows, p.shape.capacity), window, i));
+  const SiftListShape shape = SiftListShape(p.shape.windows, p.shape.capacity);
+  write_descriptor(lane, sift_descriptor(shape, window, i));
   if (lane == 0)
-    write_point(sift_point(SiftListShape(p.shape.windows, p.shape.capacity), window, i), part.corner, at, scale, turns, work[from_place + 3], octave, level);
+    write_point(sift_point(shape, window, i), part.corner, at, scale, turns, work[from_place + 3], octave, level);
 }

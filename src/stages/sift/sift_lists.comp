@@ -39,11 +39,11 @@ void list_candidates(int lane) {
   for (int i = begin; i < end; ++i) count += bitCount(work[first_word + lists.bits + i]);
   const ivec2 before = counted_before(lane, count);
   int to = before.x;
-  for (int i = begin; i < end; ++i)
-    for (uint bits = work[first_word + lists.bits + i]; bits != 0; bits &= bits - 1) {
+  for (int i = begin; i < end; ++i) {
+    uint bits = work[first_word + lists.bits + i];
+    for (; bits != 0; bits &= bits - 1, ++to)
       if (to < p.shape.candidates) work[first_word + lists.candidates + to] = 32 * i + findLSB(bits);
-      ++to;
-    }
+  }
   if (lane != 0) return;
   const int listed = min(before.y, p.shape.candidates);
   work[first_word] = listed;
@@ -74,7 +74,8 @@ void list_places(int lane, int window) {
   for (int i = lane; i < candidates; i += kSiftLanes) {
     if (!is_good(window, i)) continue;
     atomicOr(good[i / 32], 1u << i % 32);
-    for (int k = 0; k <= int(work[first_word + lists.places + i * kSiftPlaceWords + 4]); ++k) atomicMin(octave_first[k], i);
+    const int octave = int(work[first_word + lists.places + i * kSiftPlaceWords + 4]);
+    for (int k = 0; k <= octave; ++k) atomicMin(octave_first[k], i);
   }
   barrier();
   // An octave keeps no more than there may be points; octave_first becomes the good ones before it.

@@ -3,8 +3,8 @@
 #include "stages/sift/sift_params.h"
 #include "stages/sift/sift_space.glsl"
 
-// Extrema of all levels, octaves and windows as a bit each. Reads three planes of differences a level, each of their pixels 27 times,
-// mostly from the cache, but past the first comparisons only at extrema; writes a claim and a bit a position.
+// Extrema of all levels, octaves and windows as a bit each. Reads a difference a position and, where that is large, its neighbours
+// until one exceeds it, mostly from the cache; writes a claim and a bit a position. About 60 operations, most of them for the place.
 layout(local_size_x = kSiftLanes) in;
 layout(std430, binding = 0) readonly buffer Windows { ivec4 windows[]; };
 layout(std430, binding = 1) readonly buffer Planes { float planes[]; };

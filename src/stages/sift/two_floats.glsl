@@ -77,7 +77,8 @@ vec2 root_of(vec2 a) {
 // e^x for x in [-20, 2], as sift::exponential computes it.
 vec2 exponential(vec2 x) {
   const vec2 t = x * (1.0 / 1024);
-  vec2 r = add(vec2(0.5, 0), multiply(t, add(vec2(0.166666672, -4.96705388e-09), multiply(t, vec2(0.0416666679, -1.24176347e-09)))));
+  const vec2 sixth = vec2(0.166666672, -4.96705388e-09), twentyfourth = vec2(0.0416666679, -1.24176347e-09);
+  vec2 r = add(vec2(0.5, 0), multiply(t, add(sixth, multiply(t, twentyfourth))));
   r = add(vec2(1, 0), multiply(t, add(vec2(1, 0), multiply(t, r))));
   for (int i = 0; i < 10; ++i) r = multiply(r, r);
   return r;

@@ -5,8 +5,8 @@
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #include "stages/sums/sums_params.h"
 
-// Moves up to 4 bytes a pixel of each area (mark, hue, disparity; the last two only where marked) and 3 KiB of partial sums an area;
-// about 15 operations a pixel and 40 more where marked, a third of them on pairs of words. Two barriers a workgroup.
+// Moves up to 4 bytes a pixel of each area (mark, hue, disparity; the last two only where marked) and 3 KiB of partial sums an
+// area, twice; about 15 operations a pixel and 40 more where marked, a third of them on pairs of words. Three barriers a workgroup.
 layout(local_size_x = kAreaLanes) in;
 
 const int kSums = 10;
