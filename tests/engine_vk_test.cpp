@@ -84,7 +84,8 @@ struct Case {
 };
 const Case kCases[] = {
     {"thesis", [](duo::Setup&) {}},
-    {"thesis, all denoising", [](duo::Setup& s) { s.denoise = Denoise::kBoth; }},
+    {"thesis, all denoising, filled", [](duo::Setup& s) { s.denoise = Denoise::kBoth, s.fill = true; }},
+    {"pyramid", [](duo::Setup& s) { s.preset = "default"; }},
     {"thesis, taken as rectified", [](duo::Setup& s) { s.rig.reset(), s.wants.depth = false; }},
 };
 

@@ -82,6 +82,9 @@ Result<void> Frames::make_kernels() {
     return Error{ErrorCode::kUnsupported, "matcher sgm has no kernels"};
   DUO_TRY_ASSIGN(matcher_, Pyramid::make(device_, std::get<PyramidParams>(prepared_.matcher), match_setup(prepared_)));
   DUO_TRY_ASSIGN(fill_, Fill::make(device_));
+  if (prepared_.setup.fill) {
+    DUO_TRY_ASSIGN(weighted_median_, WeightedMedian::make(device_));
+  }
   if (prepared_.setup.wants.depth) {
     DUO_TRY_ASSIGN(depth_, Depth::make(device_, focal_baseline_px_mm(*prepared_.geometry)));
   }
@@ -96,6 +99,7 @@ Result<void> Frames::make_maps() {
   const Wants& wants = prepared_.setup.wants;
   DUO_TRY(make_map<std::uint16_t>(device_, "disparity", size, d_q4_));
   DUO_TRY(make_map<std::uint8_t>(device_, "origin", size, origin_));
+  if (prepared_.setup.fill) DUO_TRY(make_map<std::uint16_t>(device_, "unsmoothed disparity", size, unsmoothed_));
   if (wants.depth) DUO_TRY(make_map<std::uint16_t>(device_, "depth", size, depth_mm_));
   if (wants.color && rectifies()) DUO_TRY(make_map<Rgb8>(device_, "color", size, color_));
   return {};
@@ -186,8 +190,15 @@ void Frames::record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<
   if (rectifies())
     pair.left_inside = whole<std::uint8_t>(views_[0].inside, size),
     pair.right_inside = whole<std::uint8_t>(views_[1].inside, size);
-  std::get<Pyramid>(matcher_).record(recorder, pair, d_q4);
-  fill_.record_measured(recorder, d_q4, origin, size);
+  const auto found = prepared_.setup.fill ? whole<std::uint16_t>(unsmoothed_, size) : d_q4;
+  std::get<Pyramid>(matcher_).record(recorder, pair, found);
+  if (prepared_.setup.fill) {
+    // What was filled takes the disparity of those filled or measured pixels around it that look like it.
+    fill_.record(recorder, found, origin, size);
+    weighted_median_.record(recorder, {found, left, origin}, d_q4, size);
+  } else {
+    fill_.record_measured(recorder, d_q4, origin, size);
+  }
   recorder.stage("fill");
   if (depth_) {
     depth_->record(recorder, d_q4, whole<std::uint16_t>(depth_mm_, size), size);

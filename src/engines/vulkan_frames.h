@@ -14,6 +14,7 @@
 #include "stages/gray/gray_vk.h"
 #include "stages/median/median_vk.h"
 #include "stages/rectify/rectify_vk.h"
+#include "stages/weighted_median/weighted_median_vk.h"
 #include "vulkan/timer.h"
 
 namespace duo::vk {
@@ -80,9 +81,10 @@ class Frames {
   Rectify rectify_;
   std::variant<std::monostate, Pyramid> matcher_;
   Fill fill_;
+  WeightedMedian weighted_median_;
   std::optional<Depth> depth_;
   std::array<ViewMaps, 2> views_;
-  Buffer d_q4_, origin_, confidence_, depth_mm_, color_;
+  Buffer d_q4_, unsmoothed_, origin_, confidence_, depth_mm_, color_;
   std::array<Slot, kSlots> slots_;
 };
 
