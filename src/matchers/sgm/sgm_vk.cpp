@@ -1,0 +1,84 @@
+#include "matchers/sgm/sgm_vk.h"
+
+#include "matchers/sgm/keep_confidence_params.h"
+
+namespace duo::vk {
+namespace {
+
+constexpr std::uint32_t kKeepConfidenceCode[] = {
+#include "spirv/keep_confidence.comp.inc"
+};
+
+template <class T>
+Result<Buffer> make_map(const Device& device, const std::string& name, Size size) {
+  return Buffer::make(device, "sgm " + name,
+                      sizeof(T) * static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height),
+                      Memory::kDevice);
+}
+
+}  // namespace
+
+Result<Sgm> Sgm::make(const Device& device, const SgmParams& params, const MatchSetup& setup) {
+  Sgm out;
+  out.params_ = params;
+  out.setup_ = setup;
+  DUO_TRY_ASSIGN(out.maps_, make_maps(device, params, setup));
+  DUO_TRY_ASSIGN(out.balance_, Balance::make(device));
+  DUO_TRY_ASSIGN(out.match_planes_, MatchPlanes::make(device));
+  DUO_TRY_ASSIGN(out.semi_global_, SemiGlobal::make(device, setup.max_disparity, params.semi_global()));
+  DUO_TRY_ASSIGN(out.check_left_right_, CheckLeftRight::make(device));
+  DUO_TRY_ASSIGN(out.remove_speckle_, RemoveSpeckle::make(device));
+  DUO_TRY_ASSIGN(out.weighted_median_, WeightedMedian::make(device));
+  DUO_TRY_ASSIGN(out.keep_confidence_,
+                 Kernel::make(device, {"keep confidence", kKeepConfidenceCode, 2, sizeof(KeepConfidencePush)}));
+  return out;
+}
+
+Result<Sgm::Maps> Sgm::make_maps(const Device& device, const SgmParams& params, const MatchSetup& setup) {
+  const Size size = setup.size, planes = MatchPlanes::packed_size(size);
+  Maps out;
+  // First what may be too large.
+  DUO_TRY_ASSIGN(out.semi_global, SemiGlobal::Scratch::make(device, size, setup.max_disparity, params.semi_global()));
+  DUO_TRY_ASSIGN(out.balance, Balance::Scratch::make(device, size));
+  DUO_TRY_ASSIGN(out.speckle, RemoveSpeckle::Scratch::make(device, size));
+  DUO_TRY_ASSIGN(out.balanced, make_map<std::uint8_t>(device, "balanced", size));
+  DUO_TRY_ASSIGN(out.left_planes, make_map<std::uint32_t>(device, "left planes", planes));
+  DUO_TRY_ASSIGN(out.right_planes, make_map<std::uint32_t>(device, "right planes", planes));
+  DUO_TRY_ASSIGN(out.left_winner, make_map<std::int16_t>(device, "left winner", size));
+  DUO_TRY_ASSIGN(out.right_winner, make_map<std::int16_t>(device, "right winner", size));
+  DUO_TRY_ASSIGN(out.fine, make_map<std::uint16_t>(device, "fine", size));
+  DUO_TRY_ASSIGN(out.checked, make_map<std::uint16_t>(device, "checked", size));
+  return out;
+}
+
+void Sgm::record(Recorder& recorder, const Input& pair, const Output& out) const {
+  DUO_CHECK(setup_.masked != pair.left_inside.absent());
+  const Size size = setup_.size;
+  record_winners(recorder, pair, out.confidence);
+  // The weighted median writes to another image than it reads: the check starts in the one from which it ends in d_q4.
+  const auto checked = params_.smooth != 0 ? whole<std::uint16_t>(maps_.checked) : out.d_q4;
+  check_left_right_.record(recorder,
+                           {whole<std::int16_t>(maps_.left_winner), whole<std::int16_t>(maps_.right_winner), pair.left_inside,
+                            pair.right_inside, params_.tolerance, params_.reach},
+                           whole<std::uint16_t>(maps_.fine), checked, size);
+  remove_speckle_.record(recorder, checked, params_.speckle_step_q4, params_.speckle, maps_.speckle, size);
+  if (params_.smooth != 0) weighted_median_.record(recorder, {checked, pair.left}, out.d_q4, size);
+  if (out.confidence.absent()) return;
+  recorder.dispatch(keep_confidence_, KeepConfidencePush{out.d_q4.plane, out.confidence.plane, size.width, size.height},
+                    {reads(out.d_q4), writes(out.confidence)}, groups_for(size));
+}
+
+void Sgm::record_winners(Recorder& recorder, const Input& pair, BufferView<std::uint8_t> margin) const {
+  const Size size = setup_.size;
+  const auto balanced = whole<std::uint8_t>(maps_.balanced);
+  const auto left = whole<std::uint32_t>(maps_.left_planes), right = whole<std::uint32_t>(maps_.right_planes);
+  balance_.record(recorder, {pair.left, pair.right, pair.left_inside, pair.right_inside}, maps_.balance, balanced, size);
+  match_planes_.record(recorder, pair.left, pair.left_inside, left, size);
+  match_planes_.record(recorder, balanced, pair.right_inside, right, size);
+  semi_global_.record(recorder, left, right, maps_.semi_global,
+                      {whole<std::int16_t>(maps_.left_winner), whole<std::int16_t>(maps_.right_winner),
+                       whole<std::uint16_t>(maps_.fine), margin},
+                      size);
+}
+
+}  // namespace duo::vk

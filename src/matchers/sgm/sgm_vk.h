@@ -1,0 +1,58 @@
+// The semi-global matcher on a device. README.md beside this file tells the method, sgm_ref.cpp the order of its stages.
+#pragma once
+
+#include "matchers/sgm/sgm.h"
+#include "stages/balance/balance_vk.h"
+#include "stages/check_left_right/check_left_right_vk.h"
+#include "stages/match_planes/match_planes_vk.h"
+#include "stages/semi_global/semi_global_vk.h"
+#include "stages/speckle/speckle_vk.h"
+#include "stages/weighted_median/weighted_median_vk.h"
+
+namespace duo::vk {
+
+/// Kernels and memory of the matcher for pictures of one size; must outlive the recordings that use it.
+class Sgm {
+ public:
+  /// GrayPair on the device; the inside pictures are there exactly if the setup is masked.
+  struct Input {
+    BufferView<std::uint8_t> left = {}, right = {}, left_inside = {}, right_inside = {};
+  };
+  /// SgmMatch on the device; confidence may be absent = not wanted.
+  struct Output {
+    BufferView<std::uint16_t> d_q4 = {};
+    BufferView<std::uint8_t> confidence = {};
+  };
+  /// Errors  more pixels times disparities than a buffer holds, the device lacks memory, or the driver refuses a kernel
+  static Result<Sgm> make(const Device& device, const SgmParams& params, const MatchSetup& setup);
+  /// Disparity of the left picture in 1/16 px; all pictures of the size set up.
+  void record(Recorder& recorder, const Input& pair, const Output& out) const;
+
+ private:
+  /// The maps between the stages, and the stages' own memory.
+  struct Maps {
+    Buffer balanced, left_planes, right_planes, left_winner, right_winner, fine, checked;
+    Balance::Scratch balance;
+    SemiGlobal::Scratch semi_global;
+    RemoveSpeckle::Scratch speckle;
+  };
+  static Result<Maps> make_maps(const Device& device, const SgmParams& params, const MatchSetup& setup);
+  void record_winners(Recorder& recorder, const Input& pair, BufferView<std::uint8_t> margin) const;
+  template <class T>
+  BufferView<T> whole(const Buffer& buffer) const {
+    return {buffer, {0, setup_.size.width}};
+  }
+
+  SgmParams params_;
+  MatchSetup setup_;
+  Maps maps_;
+  Balance balance_;
+  MatchPlanes match_planes_;
+  SemiGlobal semi_global_;
+  CheckLeftRight check_left_right_;
+  RemoveSpeckle remove_speckle_;
+  WeightedMedian weighted_median_;
+  Kernel keep_confidence_;
+};
+
+}  // namespace duo::vk
