@@ -8,6 +8,7 @@
 
 #include "engines/prepared.h"
 #include "matchers/pyramid/pyramid_vk.h"
+#include "matchers/sgm/sgm_vk.h"
 #include "stages/depth/depth_vk.h"
 #include "stages/fill/fill_vk.h"
 #include "stages/gaussian/gaussian_vk.h"
@@ -68,6 +69,8 @@ class Frames {
   Result<void> make_slot(Slot& slot);
   Result<void> record(Slot& slot);
   std::array<BufferView<std::uint8_t>, 2> record_views(Slot& slot);
+  void record_match(Recorder& recorder, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right,
+                    BufferView<std::uint16_t> d_q4) const;
   void record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right);
   void record_downloads(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right);
   Rectify::Map map_of(const ViewMaps& view) const;
@@ -79,7 +82,7 @@ class Frames {
   Median median_;
   Gaussian gaussian_;
   Rectify rectify_;
-  std::variant<std::monostate, Pyramid> matcher_;
+  std::variant<std::monostate, Pyramid, Sgm> matcher_;
   Fill fill_;
   WeightedMedian weighted_median_;
   std::optional<Depth> depth_;
