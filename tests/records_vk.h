@@ -26,6 +26,7 @@ class Records {
     if (!records.empty()) std::memcpy(staging_.mapped().data(), records.data(), records.size_bytes());
   }
 
+  std::size_t count() const { return count_; }
   const vk::Buffer& buffer() const { return memory_; }
   /// What the next record_upload() moves.
   std::span<std::byte> bytes() const { return staging_.mapped(); }

@@ -1,7 +1,6 @@
 #include "stages/histogram/histogram_vk.h"
 
-#include "tests/areas.h"
-#include "tests/records_vk.h"
+#include "tests/areas_vk.h"
 
 namespace duo {
 namespace {
@@ -32,14 +31,7 @@ TEST(HistogramVk, Agrees) {
         test::must(recorder.end());
 
         for (int round = 0; round < 3; ++round) {
-          Area areas[kAreas];
-          vk::DeviceArea words[kAreas];
-          for (int i = 0; i < kAreas; ++i) {
-            areas[i] = test::random_area(rng, size, marks);
-            areas[i].marks = whole ? View<const std::uint8_t>() : marks.view();
-            words[i] = vk::device_area(areas[i]);
-          }
-          std::memcpy(areas_vk.bytes().data(), words, sizeof words);
+          const auto areas = test::put_random_areas(rng, size, marks, !whole, areas_vk);
           test::must(recorder.run());
           const auto got = bins_vk.read();
           for (std::size_t i = 0; i < kAreas; ++i)
