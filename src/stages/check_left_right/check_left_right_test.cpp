@@ -7,8 +7,8 @@ namespace {
 
 constexpr int kNone = Disparity::kNone;
 
-// By hand, tolerance 1: x = 3 with d = 2 looks at right x = 1, which says 3: kept. x = 4 with d = 1 looks at x = 3, which says 4: gone;
-// with reach 1 it also sees x = 2, which says 2: kept. x = 5 has no winner.
+// By hand, tolerance 1: x = 3 with d = 2 looks at right x = 1, which says 3: kept. x = 4 with d = 1 looks at x = 3, which says
+// 4: gone; with reach 1 it also sees x = 2, which says 2: kept. x = 5 has no winner.
 TEST(CheckLeftRight, HandWorked) {
   const auto left = test::image<std::int16_t>({{0, 0, 0, 2, 1, -1}});
   const auto right = test::image<std::int16_t>({{-1, 3, 2, 4, 4, 4}});
@@ -32,12 +32,26 @@ TEST(CheckLeftRight, HandWorked) {
 TEST(CheckLeftRight, OutsideIsNotKept) {
   const auto both = test::image<std::int16_t>({{0, 0, 0}});
   const auto fine = test::image<std::uint16_t>({{0, 0, 0}});
-  const auto left_inside = test::image<std::uint8_t>({{255, 0, 255}}), right_inside = test::image<std::uint8_t>({{255, 255, 0}});
+  const auto left_inside = test::image<std::uint8_t>({{255, 0, 255}}),
+             right_inside = test::image<std::uint8_t>({{255, 255, 0}});
   Image<std::uint16_t> dst(both.size());
   ref::check_left_right({both, both, left_inside, right_inside}, fine, dst);
   EXPECT_EQ(dst.at(0, 0), 0);
   EXPECT_EQ(dst.at(0, 1), kNone);
   EXPECT_EQ(dst.at(0, 2), kNone);
+}
+
+// x = 0 with d = 1 has its partner one column beyond the edge: the column beside that one, right x = 0, agrees.
+TEST(CheckLeftRight, PartnerBeyondTheEdge) {
+  const auto left = test::image<std::int16_t>({{1, 3}}), right = test::image<std::int16_t>({{1, 1}});
+  const auto fine = test::image<std::uint16_t>({{16, 48}});
+  const auto inside = test::constant<std::uint8_t>(left.size(), 255);
+  Image<std::uint16_t> dst(left.size());
+  ref::check_left_right({.left = left, .right = right, .tolerance = 2, .reach = 1}, fine, dst);
+  EXPECT_EQ(dst.at(0, 0), 16);
+  EXPECT_EQ(dst.at(0, 1), kNone);
+  ref::check_left_right({left, right, inside, inside, 2, 1}, fine, dst);
+  EXPECT_EQ(dst.at(0, 0), kNone);
 }
 
 TEST(CheckLeftRight, SimdAgrees) {
@@ -51,7 +65,7 @@ TEST(CheckLeftRight, SimdAgrees) {
       test::fill(fine.view, test::Fill::kRandom, rng);
       for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x) {
-          left.view.at(y, x) = static_cast<std::int16_t>(static_cast<int>(rng() % static_cast<unsigned>(std::min(x, 6) + 2)) - 1);
+          left.view.at(y, x) = static_cast<std::int16_t>(static_cast<int>(rng() % 8) - 1);  // beyond the left edge, too
           right.view.at(y, x) = static_cast<std::int16_t>(static_cast<int>(rng() % 7) - 1);
           inside.view.at(y, x) = rng() % 4 ? 255 : 0;
         }
