@@ -84,7 +84,11 @@ struct Case {
 };
 const Case kCases[] = {
     {"thesis", [](duo::Setup&) {}},
-    {"thesis, all denoising", [](duo::Setup& s) { s.denoise = Denoise::kBoth; }},
+    {"thesis, all denoising, filled", [](duo::Setup& s) { s.denoise = Denoise::kBoth, s.fill = true; }},
+    {"sgm", [](duo::Setup& s) { s.matcher = "sgm", s.preset = "default", s.wants.confidence = true; }},
+    {"sgm, filled, odd search",
+     [](duo::Setup& s) { s.matcher = "sgm", s.preset = "paths8", s.fill = true, s.max_disparity = 21; }},
+    {"pyramid", [](duo::Setup& s) { s.preset = "default"; }},
     {"thesis, taken as rectified", [](duo::Setup& s) { s.rig.reset(), s.wants.depth = false; }},
 };
 

@@ -78,10 +78,15 @@ Result<void> Frames::make_kernels() {
   if (rectifies()) {
     DUO_TRY_ASSIGN(rectify_, Rectify::make(device_));
   }
-  if (!std::holds_alternative<PyramidParams>(prepared_.matcher))
-    return Error{ErrorCode::kUnsupported, "matcher sgm has no kernels"};
-  DUO_TRY_ASSIGN(matcher_, Pyramid::make(device_, std::get<PyramidParams>(prepared_.matcher), match_setup(prepared_)));
+  if (const auto* pyramid = std::get_if<PyramidParams>(&prepared_.matcher)) {
+    DUO_TRY_ASSIGN(matcher_, Pyramid::make(device_, *pyramid, match_setup(prepared_)));
+  } else {
+    DUO_TRY_ASSIGN(matcher_, Sgm::make(device_, std::get<SgmParams>(prepared_.matcher), match_setup(prepared_)));
+  }
   DUO_TRY_ASSIGN(fill_, Fill::make(device_));
+  if (prepared_.setup.fill) {
+    DUO_TRY_ASSIGN(weighted_median_, WeightedMedian::make(device_));
+  }
   if (prepared_.setup.wants.depth) {
     DUO_TRY_ASSIGN(depth_, Depth::make(device_, focal_baseline_px_mm(*prepared_.geometry)));
   }
@@ -96,6 +101,8 @@ Result<void> Frames::make_maps() {
   const Wants& wants = prepared_.setup.wants;
   DUO_TRY(make_map<std::uint16_t>(device_, "disparity", size, d_q4_));
   DUO_TRY(make_map<std::uint8_t>(device_, "origin", size, origin_));
+  if (prepared_.setup.fill) DUO_TRY(make_map<std::uint16_t>(device_, "unsmoothed disparity", size, unsmoothed_));
+  if (wants.confidence) DUO_TRY(make_map<std::uint8_t>(device_, "confidence", size, confidence_));
   if (wants.depth) DUO_TRY(make_map<std::uint16_t>(device_, "depth", size, depth_mm_));
   if (wants.color && rectifies()) DUO_TRY(make_map<Rgb8>(device_, "color", size, color_));
   return {};
@@ -177,17 +184,34 @@ std::array<BufferView<std::uint8_t>, 2> Frames::record_views(Slot& slot) {
   return now;
 }
 
+void Frames::record_match(Recorder& recorder, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right,
+                          BufferView<std::uint16_t> d_q4) const {
+  BufferView<std::uint8_t> left_inside, right_inside, confidence;
+  if (rectifies()) {
+    left_inside = whole<std::uint8_t>(views_[0].inside, prepared_.size);
+    right_inside = whole<std::uint8_t>(views_[1].inside, prepared_.size);
+  }
+  if (prepared_.setup.wants.confidence) confidence = whole<std::uint8_t>(confidence_, prepared_.size);
+  if (const auto* pyramid = std::get_if<Pyramid>(&matcher_))
+    pyramid->record(recorder, {left, right, left_inside, right_inside}, d_q4);
+  else
+    std::get<Sgm>(matcher_).record(recorder, {left, right, left_inside, right_inside}, {d_q4, confidence});
+}
+
 void Frames::record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right) {
   Recorder& recorder = *slot.recorder;
   const Size size = prepared_.size;
   const auto d_q4 = whole<std::uint16_t>(d_q4_, size);
   const auto origin = whole<std::uint8_t>(origin_, size);
-  Pyramid::Input pair{left, right};
-  if (rectifies())
-    pair.left_inside = whole<std::uint8_t>(views_[0].inside, size),
-    pair.right_inside = whole<std::uint8_t>(views_[1].inside, size);
-  std::get<Pyramid>(matcher_).record(recorder, pair, d_q4);
-  fill_.record_measured(recorder, d_q4, origin, size);
+  const auto found = prepared_.setup.fill ? whole<std::uint16_t>(unsmoothed_, size) : d_q4;
+  record_match(recorder, left, right, found);
+  if (prepared_.setup.fill) {
+    // What was filled takes the disparity of those filled or measured pixels around it that look like it.
+    fill_.record(recorder, found, origin, size);
+    weighted_median_.record(recorder, {found, left, origin}, d_q4, size);
+  } else {
+    fill_.record_measured(recorder, d_q4, origin, size);
+  }
   recorder.stage("fill");
   if (depth_) {
     depth_->record(recorder, d_q4, whole<std::uint16_t>(depth_mm_, size), size);

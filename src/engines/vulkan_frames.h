@@ -8,12 +8,14 @@
 
 #include "engines/prepared.h"
 #include "matchers/pyramid/pyramid_vk.h"
+#include "matchers/sgm/sgm_vk.h"
 #include "stages/depth/depth_vk.h"
 #include "stages/fill/fill_vk.h"
 #include "stages/gaussian/gaussian_vk.h"
 #include "stages/gray/gray_vk.h"
 #include "stages/median/median_vk.h"
 #include "stages/rectify/rectify_vk.h"
+#include "stages/weighted_median/weighted_median_vk.h"
 #include "vulkan/timer.h"
 
 namespace duo::vk {
@@ -67,6 +69,8 @@ class Frames {
   Result<void> make_slot(Slot& slot);
   Result<void> record(Slot& slot);
   std::array<BufferView<std::uint8_t>, 2> record_views(Slot& slot);
+  void record_match(Recorder& recorder, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right,
+                    BufferView<std::uint16_t> d_q4) const;
   void record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right);
   void record_downloads(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right);
   Rectify::Map map_of(const ViewMaps& view) const;
@@ -78,11 +82,12 @@ class Frames {
   Median median_;
   Gaussian gaussian_;
   Rectify rectify_;
-  std::variant<std::monostate, Pyramid> matcher_;
+  std::variant<std::monostate, Pyramid, Sgm> matcher_;
   Fill fill_;
+  WeightedMedian weighted_median_;
   std::optional<Depth> depth_;
   std::array<ViewMaps, 2> views_;
-  Buffer d_q4_, origin_, confidence_, depth_mm_, color_;
+  Buffer d_q4_, unsmoothed_, origin_, confidence_, depth_mm_, color_;
   std::array<Slot, kSlots> slots_;
 };
 

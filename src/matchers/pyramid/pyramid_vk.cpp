@@ -18,9 +18,6 @@ BufferView<T> whole(const Buffer& buffer, Size size) {
 }  // namespace
 
 Result<Pyramid> Pyramid::make(const Device& device, const PyramidParams& params, const MatchSetup& setup) {
-  if (params.search == PyramidParams::Search::kTiles && params.speckle > 0)
-    return Error{ErrorCode::kUnsupported,
-                 "set up matcher pyramid on a device: islands are not removed there yet; use speckle=0"};
   Pyramid out;
   out.params_ = params;
   out.masked_ = setup.masked;
@@ -50,6 +47,8 @@ Result<Pyramid::Tiles> Pyramid::make_tiles(const Device& device, Size size) {
   DUO_TRY_ASSIGN(out.check, CheckLeftRight::make(device));
   DUO_TRY_ASSIGN(out.candidates, TileCandidates::make(device));
   DUO_TRY_ASSIGN(out.median, Median::make(device));
+  DUO_TRY_ASSIGN(out.speckle, RemoveSpeckle::make(device));
+  DUO_TRY_ASSIGN(out.speckle_scratch, RemoveSpeckle::Scratch::make(device, size));
   DUO_TRY_ASSIGN(out.filtered, make_image<std::uint16_t>(device, "filtered", size));
   return out;
 }
@@ -178,6 +177,8 @@ void Pyramid::record_checked(Recorder& recorder, const Input& pair, BufferView<s
   recorder.stage("check_left_right");
   for (int i = 0; i < params_.medians; ++i, std::swap(now, next)) tiles_->median.record(recorder, now, next, size);
   recorder.stage("median");
+  tiles_->speckle.record(recorder, d_q4, params_.speckle_step_q4, params_.speckle, tiles_->speckle_scratch, size);
+  recorder.stage("speckle");
 }
 
 }  // namespace duo::vk

@@ -11,6 +11,7 @@
 #include "stages/match_around/match_around_vk.h"
 #include "stages/match_tiles/match_tiles_vk.h"
 #include "stages/median/median_vk.h"
+#include "stages/speckle/speckle_vk.h"
 #include "stages/tile_candidates/tile_candidates_vk.h"
 
 namespace duo::vk {
@@ -39,6 +40,8 @@ class Pyramid {
     CheckLeftRight check;
     TileCandidates candidates;
     Median median;
+    RemoveSpeckle speckle;
+    RemoveSpeckle::Scratch speckle_scratch;
     Buffer filtered;
   };
   /// The memory of one level; the pictures of level 0 belong to the caller.

@@ -27,7 +27,7 @@ struct Scene {
 
 /// Two scenes with the same memory: the second must not see anything of the first.
 void expect_agrees(vk::Device& device, const char* preset, const MatchSetup& setup, const std::string& where) {
-  const PyramidParams params = *pyramid_params(preset, {{"speckle", 0}});
+  const PyramidParams params = *pyramid_params(preset, {});
   const auto matcher = must(vk::Pyramid::make(device, params, setup));
   ref::Pyramid reference(params, setup);
   StageTimer timer;

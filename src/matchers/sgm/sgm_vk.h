@@ -18,34 +18,39 @@ class Sgm {
   struct Input {
     BufferView<std::uint8_t> left = {}, right = {}, left_inside = {}, right_inside = {};
   };
+  /// SgmMatch on the device; confidence may be absent = not wanted.
+  struct Output {
+    BufferView<std::uint16_t> d_q4 = {};
+    BufferView<std::uint8_t> confidence = {};
+  };
   /// Errors  more pixels times disparities than a buffer holds, the device lacks memory, or the driver refuses a kernel
   static Result<Sgm> make(const Device& device, const SgmParams& params, const MatchSetup& setup);
-  /// SgmMatch on the device, of the size set up; confidence may be absent = not wanted.
-  void record(Recorder& recorder, const Input& pair, BufferView<std::uint16_t> d_q4,
-              BufferView<std::uint8_t> confidence = {}) const;
+  /// Disparity of the left picture in 1/16 px; all pictures of the size set up.
+  void record(Recorder& recorder, const Input& pair, const Output& out) const;
 
  private:
-  /// SgmMaps, and the packed planes of both views.
+  /// The maps between the stages, and the stages' own memory.
   struct Maps {
     Buffer balanced, left_planes, right_planes, left_winner, right_winner, fine, checked;
+    Balance::Scratch balance;
+    SemiGlobal::Scratch semi_global;
+    RemoveSpeckle::Scratch speckle;
   };
-  static Result<Maps> make_maps(const Device& device, Size size);
-  Result<void> make_stages(const Device& device, int max_disparity);
-  void record_found(Recorder& recorder, const Input& pair, BufferView<std::uint8_t> margin) const;
-  void record_cleaned(Recorder& recorder, const Input& pair, BufferView<std::uint16_t> d_q4) const;
+  static Result<Maps> make_maps(const Device& device, const SgmParams& params, const MatchSetup& setup);
+  void record_winners(Recorder& recorder, const Input& pair, BufferView<std::uint8_t> margin) const;
+  template <class T>
+  BufferView<T> whole(const Buffer& buffer) const {
+    return {buffer, {0, setup_.size.width}};
+  }
 
   SgmParams params_;
-  Size size_;
-  bool masked_ = false;
+  MatchSetup setup_;
   Maps maps_;
   Balance balance_;
-  Balance::Scratch balance_scratch_;
   MatchPlanes match_planes_;
   SemiGlobal semi_global_;
-  SemiGlobal::Scratch volumes_;
-  CheckLeftRight check_;
+  CheckLeftRight check_left_right_;
   RemoveSpeckle remove_speckle_;
-  RemoveSpeckle::Scratch speckle_scratch_;
   WeightedMedian weighted_median_;
   Kernel keep_confidence_;
 };

@@ -14,7 +14,7 @@ namespace duo {
 ///
 /// Shape    pair H x W, dst the same
 /// Threads  rows are independent once the sums are there
-/// Exact    all engines agree bit for bit: integer sums, then one table of 256 values in integers. Deviations in 1/2^24,
+/// Exact    ref, simd and vk agree bit for bit: integer sums, then one table of 256 values in integers. Deviations in 1/2^24,
 /// rounded
 ///          down; means, gain and offset in 1/2^16, rounded to the nearest; for up to 2^23 pixels
 /// Source   the affine brightness model of Hirschmueller, Scharstein, "Evaluation of stereo matching costs on images with

@@ -20,8 +20,8 @@ int index(Plane plane, ivec2 at) { return plane.offset + at.y * plane.stride + a
 
 bool consistent(ivec2 at) {
   const int d = int(left[index(p.left, at)]), partner = at.x - d;
-  if (d < 0) return false;
-  if (p.masked != 0 && (uint(left_inside[index(p.left_inside, at)]) == 0 || partner < 0 ||
+  if (d < 0 || partner < 0) return false;
+  if (p.masked != 0 && (uint(left_inside[index(p.left_inside, at)]) == 0 ||
                         uint(right_inside[index(p.right_inside, ivec2(partner, at.y))]) == 0))
     return false;
   for (int x = max(partner - p.reach, 0); x <= min(partner + p.reach, p.width - 1); ++x) {

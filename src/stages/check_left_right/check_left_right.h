@@ -10,14 +10,13 @@
 namespace duo {
 
 /// Keeps a left winner d where the right view's winner at x - d, or at most `reach` columns beside it, differs from d by at
-/// most `tolerance`; and where both pixels are inside their raw pictures.
+/// most `tolerance`; and where both pixels are inside their raw pictures. With d > x there is no other pixel, and d is not
+/// kept.
 ///
 /// check_winners: dst = winner or -1. check_left_right: dst = fine or Disparity::kNone.
 ///
 /// Shape    all H x W; inside pictures may be empty = all inside
 /// Units    left, right px (-1 = none); fine and dst 1/16 px
-/// Border   with inside pictures, a partner beyond the left edge (d > x) is outside; without them, a column within reach of it
-///          may confirm it
 /// Threads  rows are independent
 /// Exact    ref, simd and vk agree bit for bit
 /// Source   Fua, "A parallel stereo algorithm that produces dense depth maps and preserves image features", 1993; reach > 0 is

@@ -9,8 +9,8 @@ namespace {
 
 bool consistent(const CheckLeftRight& in, int y, int x) {
   const int d = in.left.at(y, x);
-  if (d < 0) return false;
-  if (!in.left_inside.empty() && (in.left_inside.at(y, x) == 0 || x < d || in.right_inside.at(y, x - d) == 0)) return false;
+  if (d < 0 || d > x) return false;
+  if (!in.left_inside.empty() && (in.left_inside.at(y, x) == 0 || in.right_inside.at(y, x - d) == 0)) return false;
   for (int xr = x - d - in.reach; xr <= x - d + in.reach; ++xr) {
     if (xr < 0 || xr >= in.right.width()) continue;
     const int other = in.right.at(y, xr);

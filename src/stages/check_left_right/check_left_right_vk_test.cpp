@@ -16,7 +16,7 @@ struct Pictures {
   Pictures(Size size, std::mt19937& rng) : left(size), right(size), left_inside(size), right_inside(size), fine(size) {
     for (int y = 0; y < size.height; ++y)
       for (int x = 0; x < size.width; ++x) {
-        left.at(y, x) = static_cast<std::int16_t>(static_cast<int>(rng() % 12) - 1);  // beyond the left edge, too
+        left.at(y, x) = static_cast<std::int16_t>(static_cast<int>(rng() % 12) - 1);
         right.at(y, x) = static_cast<std::int16_t>(static_cast<int>(rng() % 12) - 1);
         left_inside.at(y, x) = rng() % 8 == 0 ? 0 : 255;
         right_inside.at(y, x) = rng() % 8 == 0 ? 0 : 255;

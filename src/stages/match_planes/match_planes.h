@@ -17,7 +17,7 @@ namespace duo {
 /// Shape    gray H x W; inside the same or empty = all inside; out made with this size
 /// Border   edge pixels continue
 /// Threads  rows are independent
-/// Exact    ref and simd agree bit for bit
+/// Exact    ref, simd and vk agree bit for bit
 /// Source   Zabih, Woodfill, "Non-parametric local transforms for computing visual correspondence", 1994 (census); Birchfield,
 ///          Tomasi, "A pixel dissimilarity measure that is insensitive to image sampling", 1998 (intervals; here also along y,
 ///          as the rows of two webcams never lie quite true)

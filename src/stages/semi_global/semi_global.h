@@ -44,7 +44,7 @@ struct SemiGlobalParams {
 /// Shape    planes and outputs H x W; left and right planes padded alike by padding() columns
 /// Units    left and right px; fine 1/16 px; margin in costs
 /// Border   edge columns of the right view continue: d may exceed x
-/// Exact    ref and simd agree bit for bit, with any number of threads. All in bytes: C <= 16 + 3 * 32 = 112, L <= C + P2 <=
+/// Exact    ref, simd and vk agree bit for bit, with any number of threads. All in bytes: C <= 16 + 3 * 32 = 112, L <= C + P2 <=
 /// 224; where
 ///          L + p1 would pass 255 it saturates, above min L' + P2 <= 224, and changes nothing
 /// Source   Hirschmueller, "Stereo processing by semiglobal matching and mutual information", 2008; P2 by the picture's

@@ -20,8 +20,8 @@ void begin_path() {
   least = 0;
 }
 
-// To the pixel of `cost`: L = C + min(L', L' beside + p1, least L' + p2) - least L'. All lanes of a subgroup take part. The lanes' words form a ring: what
-// lane 0 gets from the last lane belongs to its next word, and what the last lane gets from lane 0 to its word before.
+// To the pixel of `cost`: L = C + min(L', L' beside + p1, least L' + p2) - least L'. All lanes of a subgroup take part. Their words
+// form a ring: what lane 0 gets from the last lane belongs to its next word, what the last lane gets from lane 0 to its word before.
 void advance(uint p1, uint p2) {
   const uint lane = gl_SubgroupInvocationID, end = gl_SubgroupSize - 1;
   const uint before = (lane + end) & end, after = (lane + 1) & end;

@@ -15,7 +15,7 @@ namespace duo {
 // Shape    d_q4 H x W, changed in place
 // Units    1/16 px
 // Threads  simd: bands in parallel, joined at their borders; the result does not depend on the bands
-// Exact    ref and simd agree bit for bit
+// Exact    ref, simd and vk agree bit for bit
 // Source   connected components by union-find (core/run_forest.h)
 namespace ref {
 void remove_speckle(View<std::uint16_t> d_q4, int step_q4, int smallest);

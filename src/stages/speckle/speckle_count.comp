@@ -3,7 +3,7 @@
 #extension GL_EXT_shader_16bit_storage : require
 #include "stages/speckle/speckle_params.h"
 
-// Labels become roots, and roots count their pixels until there are enough: a large island would have all pixels of the picture wait
+// Labels become roots, and roots count their pixels until there are enough: else all pixels of a large island would wait
 // for one word. Moves 6 bytes a pixel and the way up.
 layout(local_size_x = kGroupWidth, local_size_y = kGroupHeight) in;
 layout(std430, binding = 0) readonly buffer D { uint16_t d_q4[]; };

@@ -11,14 +11,13 @@ layout(std430, binding = 0) readonly buffer D { uint16_t d_q4[]; };
 
 // Playne, Hawick: whoever finds that another one has joined its root elsewhere in the meantime, joins that place too.
 void join_islands(uint a, uint b) {
-  for (;;) {
-    a = root(a);
-    b = root(b);
-    if (a == b) return;
+  a = root(a);
+  b = root(b);
+  while (a != b) {
     const uint lower = min(a, b), upper = max(a, b), before = atomicMin(labels[upper], lower);
-    if (before == upper) return;
-    a = before;
     b = lower;
+    a = before == upper ? lower : before;
+    if (a != b) a = root(a);
   }
 }
 

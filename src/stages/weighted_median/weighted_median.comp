@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_8bit_storage : require
 #extension GL_EXT_shader_16bit_storage : require
 #include "stages/weighted_median/weighted_median_params.h"
@@ -33,10 +34,10 @@ uint weight_of(uint difference) { return kWeights[difference >> 4] >> ((differen
 uint median_around(int centre) {
   const uint own = tile[centre] & kNone;
   const int centre_guide = int(tile[centre] >> 16);
-  uint taps[kTaps];  // weight << 16 | value
+  uint taps[kTaps];  // weight << 16 | value; in registers, as both loops over it are unrolled
   uint total = 0, low = kNone, high = 0;
   int corner = centre - kRadius * kTileWidth - kRadius;
-  for (int i = 0; i < kTaps; ++i) {
+  [[unroll]] for (int i = 0; i < kTaps; ++i) {
     const uint tap = tile[corner + i / kSide * kStep * kTileWidth + i % kSide * kStep], value = tap & kNone;
     const uint difference = uint(abs(int(tap >> 16) - centre_guide));
     const uint weight = value != kNone && difference < 64 ? weight_of(difference) : 0;
@@ -52,7 +53,7 @@ uint median_around(int centre) {
   while (low < high) {
     const uint middle = (low + high) >> 1;
     uint sum = 0;
-    for (int i = 0; i < kTaps; ++i) sum += (taps[i] & kNone) <= middle ? taps[i] >> 16 : 0;
+    [[unroll]] for (int i = 0; i < kTaps; ++i) sum += (taps[i] & kNone) <= middle ? taps[i] >> 16 : 0;
     if (2 * sum >= total)
       high = middle;
     else

@@ -20,7 +20,7 @@ namespace duo {
 /// Units    d_q4 any value, Disparity::kNone = hole; guide gray values; origin Origin
 /// Border   taps outside the picture do not count
 /// Threads  rows are independent
-/// Exact    ref and simd agree bit for bit; weights sum to 49 * 57 = 2793 at most
+/// Exact    ref, simd and vk agree bit for bit; weights sum to 49 * 57 = 2793 at most
 /// Source   Ma, He, Wei, Sun, Wu, "Constant time weighted median filtering for stereo matching and beyond", 2013 (a guided
 /// median
 ///          as the last step of stereo); the sparse window and whole-numbered weights are ours: 49 taps instead of 169 cost
