@@ -36,6 +36,9 @@ inline void must(const Result<void>& result) {
   if (!result) throw std::runtime_error(result.error().what);
 }
 
+/// Whether this run checks every access of the kernels: a hundred times slower, so that tests with many cases leave some out.
+inline bool assisted() { return std::getenv("DUOPTIC_GPU_ASSISTED") != nullptr; }
+
 /// Opens every usable device before the first test, and looks at what validation said after the last.
 class VulkanEnvironment : public ::testing::Environment {
  public:
@@ -44,8 +47,7 @@ class VulkanEnvironment : public ::testing::Environment {
       std::puts("skipped: no Vulkan");
       std::exit(77);  // ctest: skipped
     }
-    const bool assisted = std::getenv("DUOPTIC_GPU_ASSISTED") != nullptr;
-    auto instance = vk::Instance::open(assisted ? vk::Validation::kGpuAssisted : vk::Validation::kOn);
+    auto instance = vk::Instance::open(assisted() ? vk::Validation::kGpuAssisted : vk::Validation::kOn);
     ASSERT_TRUE(instance.has_value()) << instance.error().what;
     instance_ = *instance;
     const auto physical = instance_->devices();

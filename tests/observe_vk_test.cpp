@@ -120,6 +120,7 @@ void observe_ref(const Scene& scene, const Expectation& wanted, std::vector<Regi
 }
 
 TEST(ObserveVk, OneRecordingGivesTheReferencesObservation) {
+  if (test::assisted()) GTEST_SKIP() << "each of its kernels is checked alone";
   const Expectation wanted(Scene(0));
   test::each_device([&](vk::Device& device, const std::string& where) {
     const Kernels kernels(device);
