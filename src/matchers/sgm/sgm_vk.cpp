@@ -61,11 +61,15 @@ void Sgm::record(Recorder& recorder, const Input& pair, const Output& out) const
                            {whole<std::int16_t>(maps_.left_winner), whole<std::int16_t>(maps_.right_winner), pair.left_inside,
                             pair.right_inside, params_.tolerance, params_.reach},
                            whole<std::uint16_t>(maps_.fine), checked, size);
+  recorder.stage("check_left_right");
   remove_speckle_.record(recorder, checked, params_.speckle_step_q4, params_.speckle, maps_.speckle, size);
+  recorder.stage("speckle");
   if (params_.smooth != 0) weighted_median_.record(recorder, {checked, pair.left}, out.d_q4, size);
-  if (out.confidence.absent()) return;
-  recorder.dispatch(keep_confidence_, KeepConfidencePush{out.d_q4.plane, out.confidence.plane, size.width, size.height},
-                    {reads(out.d_q4), writes(out.confidence)}, groups_for(size));
+  if (!out.confidence.absent()) {
+    const KeepConfidencePush push{out.d_q4.plane, out.confidence.plane, size.width, size.height};
+    recorder.dispatch(keep_confidence_, push, {reads(out.d_q4), writes(out.confidence)}, groups_for(size));
+  }
+  recorder.stage("weighted_median");
 }
 
 void Sgm::record_winners(Recorder& recorder, const Input& pair, BufferView<std::uint8_t> margin) const {
@@ -73,12 +77,15 @@ void Sgm::record_winners(Recorder& recorder, const Input& pair, BufferView<std::
   const auto balanced = whole<std::uint8_t>(maps_.balanced);
   const auto left = whole<std::uint32_t>(maps_.left_planes), right = whole<std::uint32_t>(maps_.right_planes);
   balance_.record(recorder, {pair.left, pair.right, pair.left_inside, pair.right_inside}, maps_.balance, balanced, size);
+  recorder.stage("balance");
   match_planes_.record(recorder, pair.left, pair.left_inside, left, size);
   match_planes_.record(recorder, balanced, pair.right_inside, right, size);
+  recorder.stage("match_planes");
   semi_global_.record(recorder, left, right, maps_.semi_global,
                       {whole<std::int16_t>(maps_.left_winner), whole<std::int16_t>(maps_.right_winner),
                        whole<std::uint16_t>(maps_.fine), margin},
                       size);
+  recorder.stage("semi_global");
 }
 
 }  // namespace duo::vk
