@@ -65,10 +65,9 @@ void Sgm::record(Recorder& recorder, const Input& pair, const Output& out) const
   remove_speckle_.record(recorder, checked, params_.speckle_step_q4, params_.speckle, maps_.speckle, size);
   recorder.stage("speckle");
   if (params_.smooth != 0) weighted_median_.record(recorder, {checked, pair.left}, out.d_q4, size);
-  if (!out.confidence.absent()) {
-    const KeepConfidencePush push{out.d_q4.plane, out.confidence.plane, size.width, size.height};
-    recorder.dispatch(keep_confidence_, push, {reads(out.d_q4), writes(out.confidence)}, groups_for(size));
-  }
+  if (!out.confidence.absent())
+    recorder.dispatch(keep_confidence_, KeepConfidencePush{out.d_q4.plane, out.confidence.plane, size.width, size.height},
+                      {reads(out.d_q4), writes(out.confidence)}, groups_for(size));
   recorder.stage("weighted_median");
 }
 
