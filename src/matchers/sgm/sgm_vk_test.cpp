@@ -1,6 +1,7 @@
 #include "matchers/sgm/sgm_vk.h"
 
 #include "tests/agree_vk.h"
+#include "vulkan/timer.h"
 
 namespace duo {
 namespace {
@@ -74,6 +75,34 @@ TEST(SgmVk, AgreesUnsmoothed) {
   test::each_device([](vk::Device& device, const std::string& where) {
     const SgmParams params = *sgm_params("default", {{"paths", 4}, {"smooth", 0}, {"speckle", 20}, {"reach", 0}});
     expect_sgm_agrees(device, params, {{61, 24}, 16, true}, true, where);
+  });
+}
+
+// A frame's times read alike whichever engine took them.
+TEST(SgmVk, TimesTheReferencesStages) {
+  const Size size{20, 9};
+  const SgmParams params = *sgm_params("default", {});
+  const DarkerScene scene(size, 23);
+  Image<std::uint16_t> found(size);
+  StageTimer reference_timer;
+  StageTimer::Times want;
+  reference_timer.start(want, true);
+  ref::Sgm(params, {size, 8, false}).match({scene.left, scene.right}, {found}, reference_timer);
+  test::each_device([&](vk::Device& device, const std::string&) {
+    const auto matcher = must(vk::Sgm::make(device, params, {size, 8, false}));
+    const OnDevice<std::uint8_t> left(device, scene.left, "left"), right(device, scene.right, "right");
+    const OnDevice<std::uint16_t> d_q4(device, size, "d_q4");
+    auto timer = must(vk::Timer::make(device, 16));
+    auto recorder = must(vk::Recorder::make(device));
+    recorder.begin(&timer);
+    left.record_upload(recorder);
+    right.record_upload(recorder);
+    matcher.record(recorder, {left.view(), right.view()}, {d_q4.view()});
+    must(recorder.end());
+    must(recorder.run());
+    std::size_t stages = 0;
+    for (const auto& [stage, ns] : must(timer.read())) EXPECT_STREQ(stage, want[stages++].stage);
+    EXPECT_EQ(want[stages].wall_ns, 0);
   });
 }
 
