@@ -153,7 +153,7 @@ TEST(VulkanEngine, RefusesWhatCannotWorkAndStaysAsItWas) {
 
 // What the driver does, by call: how often, and how long on this thread's clock.
 struct Calls {
-  int submits = 0, waits = 0, fail_submit_at = -1, fail_wait_at = -1, allocations_left = 1 << 30;
+  int submits = 0, waits = 0, fail_submit_at = -1, fail_wait_at = -1, hang_at = -1, allocations_left = 1 << 30;
   std::int64_t inside_ns = 0;
   vk::DeviceFunctions real;
 } calls;
@@ -181,10 +181,12 @@ void watch(vk::DeviceFunctions& table) {
   };
   // The work itself ends, as that of a lost device never would: what it uses may be freed.
   table.vkWaitSemaphores = [](VkDevice device, const VkSemaphoreWaitInfo* info, std::uint64_t timeout_ns) {
+    if (calls.hang_at >= 0 && calls.waits >= calls.hang_at) return VK_TIMEOUT;  // its work goes on meanwhile
     const VkResult r = inside([&] { return calls.real.vkWaitSemaphores(device, info, timeout_ns); });
     return calls.waits++ == calls.fail_wait_at ? VK_ERROR_DEVICE_LOST : r;
   };
   table.vkGetSemaphoreCounterValue = [](VkDevice device, VkSemaphore semaphore, std::uint64_t* value) {
+    if (calls.hang_at >= 0 && calls.waits >= calls.hang_at) return *value = 0, VK_SUCCESS;
     return inside([&] { return calls.real.vkGetSemaphoreCounterValue(device, semaphore, value); });
   };
   table.vkAllocateMemory = [](VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* with,
@@ -247,6 +249,26 @@ TEST(VulkanEngine, CpuGoesOnWithoutDeviceMemory) {
   expect_cpu_goes_on([] { calls.allocations_left = 1; }, "memory for some");
 }
 
+// What one setup is too large for, another may not be; and who computes is told as it is.
+TEST(VulkanEngine, TriesTheDeviceAgainAtTheNextSetup) {
+  const SyntheticPair scene = room();
+  const duo::Setup setup = setup_for(scene);
+  OwnDevice device;
+  watch(device.calls());
+  calls.allocations_left = 0;
+  const auto vulkan = prepared(device.engine(), setup), reference = prepared(make_ref_engine(), setup);
+  EXPECT_NE(vulkan->take_event().find("the CPU goes on"), std::string::npos);
+  EXPECT_STREQ(vulkan->name(), "simd");
+  EXPECT_EQ(vulkan->device(), "");
+  expect_same_frame(run(*reference, scene.pair), run(*vulkan, scene.pair), "on the CPU");
+  calls.allocations_left = 1 << 30;
+  ASSERT_TRUE(vulkan->prepare(setup));
+  EXPECT_EQ(vulkan->take_event(), "");
+  EXPECT_STREQ(vulkan->name(), "vulkan");
+  EXPECT_FALSE(vulkan->device().empty());
+  expect_same_frame(run(*reference, scene.pair), run(*vulkan, scene.pair), "on the device again");
+}
+
 TEST(VulkanEngine, PairsInFlightSurviveTheLoss) {
   const SyntheticPair scenes[] = {room(), room(5)};
   const duo::Setup setup = setup_for(scenes[0]);
@@ -258,6 +280,21 @@ TEST(VulkanEngine, PairsInFlightSurviveTheLoss) {
   vulkan->submit(scenes[1].pair);
   expect_same_frame(run(*reference, scenes[0].pair), vulkan->collect(), "the pair it was lost on");
   expect_same_frame(run(*reference, scenes[1].pair), vulkan->collect(), "the pair behind");
+}
+
+// Nothing that the device may still write to is freed: validation would speak, and so would the software driver.
+TEST(VulkanEngine, CpuGoesOnWhenTheDeviceHangs) {
+  const SyntheticPair scenes[] = {room(), room(5)};
+  const duo::Setup setup = setup_for(scenes[0]);
+  OwnDevice device;
+  watch(device.calls());
+  const auto vulkan = prepared(device.engine(), setup), reference = prepared(make_ref_engine(), setup);
+  calls.hang_at = calls.waits;
+  vulkan->submit(scenes[0].pair);
+  vulkan->submit(scenes[1].pair);
+  expect_same_frame(run(*reference, scenes[0].pair), vulkan->collect(), "the pair it hung on");
+  expect_same_frame(run(*reference, scenes[1].pair), vulkan->collect(), "the pair behind");
+  EXPECT_EQ(vulkan->device(), "");
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ class VulkanEngine final : public Engine {
  public:
   VulkanEngine(std::unique_ptr<vk::Device> device, int threads) : device_(std::move(device)), threads_(threads) {}
 
-  const char* name() const override { return "vulkan"; }
-  std::string device() const override { return device_name_; }
+  const char* name() const override { return cpu_ != nullptr ? cpu_->name() : "vulkan"; }
+  std::string device() const override { return cpu_ != nullptr ? std::string() : device_name_; }
   int in_flight() const override { return vk::Frames::kSlots; }
   const std::optional<Rectified>& rectified() const override { return prepared_->geometry; }
   std::string take_event() override { return std::exchange(event_, {}); }
@@ -25,10 +25,11 @@ class VulkanEngine final : public Engine {
   Result<void> prepare(const Setup& setup) override {
     DUO_TRY_ASSIGN(Prepared checked, prepare_setup(setup));
     auto prepared = std::make_unique<Prepared>(std::move(checked));
+    work_.reset();  // first: it speaks of the old setup, and there need not be memory for both
     if (device_ != nullptr) {
       auto work = vk::Frames::make(*device_, *prepared);
       if (work) {
-        work_ = std::move(*work);  // the old one first: it speaks of the old setup
+        work_ = std::move(*work);
         cpu_.reset();
       } else {
         give_up(work.error());
@@ -36,7 +37,7 @@ class VulkanEngine final : public Engine {
     }
     prepared_ = std::move(prepared);
     first_ = count_ = 0;
-    if (device_ == nullptr) return prepare_cpu();
+    if (work_ == nullptr) return prepare_cpu();
     for (Frame& frame : frames_) frame = work_->make_frame();
     return {};
   }
@@ -76,7 +77,7 @@ class VulkanEngine final : public Engine {
   void give_up(const Error& why) {
     event_ = fmt::format("{}; the CPU goes on in its place", why.what);
     work_.reset();
-    device_.reset();
+    if (why.code == ErrorCode::kDeviceLost) device_.reset();  // else another setup may be one for it
   }
 
   Result<void> prepare_cpu() {
@@ -94,7 +95,7 @@ class VulkanEngine final : public Engine {
   int threads_;
   std::unique_ptr<Prepared> prepared_ = std::make_unique<Prepared>();
   std::unique_ptr<vk::Frames> work_;  // after what it refers to
-  std::unique_ptr<Engine> cpu_;       // once the device was lost
+  std::unique_ptr<Engine> cpu_;       // once the device was lost, and for setups that are none for it
   std::array<Frame, 2> frames_;       // the last one stays as it is while the next is made
   unsigned current_ = 0;
   std::array<const Pair*, vk::Frames::kSlots> pairs_{};  // in flight: count_ of them from first_

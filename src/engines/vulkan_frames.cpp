@@ -7,6 +7,7 @@
 
 #include "core/check.h"
 #include "core/clock.h"
+#include "stages/fill/fill_params.h"
 
 namespace duo::vk {
 namespace {
@@ -56,6 +57,9 @@ Image<std::uint8_t> inside_of(const ResampleMap& map, Size raw) {
 }  // namespace
 
 Result<std::unique_ptr<Frames>> Frames::make(Device& device, const Prepared& prepared) {
+  if (prepared.size.width > kFillMaxWidth)
+    return Error{ErrorCode::kUnsupported,
+                 fmt::format("rectified pictures of {} columns: kernels take at most {}", prepared.size.width, kFillMaxWidth)};
   std::unique_ptr<Frames> out(new Frames(device, prepared));
   DUO_TRY(out->make_kernels());
   DUO_TRY(out->make_maps());

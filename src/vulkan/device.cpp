@@ -3,11 +3,24 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <mutex>
 #include <utility>
+#include <vector>
 
 #include "vulkan/pipeline_cache.h"
 
 namespace duo::vk {
+namespace {
+
+/// An instance must not go before its devices.
+void keep_to_the_end(std::shared_ptr<Instance> instance) {
+  static std::mutex mutex;
+  static auto* const kept = new std::vector<std::shared_ptr<Instance>>;
+  const std::lock_guard lock(mutex);
+  kept->push_back(std::move(instance));
+}
+
+}  // namespace
 
 Result<std::unique_ptr<Device>> Device::make(std::shared_ptr<Instance> instance, const PhysicalDevice& physical) {
   if (!physical.info.lacks.empty())
@@ -21,6 +34,8 @@ Result<std::unique_ptr<Device>> Device::make(std::shared_ptr<Instance> instance,
 
   auto f13 = structure<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
   f13.synchronization2 = VK_TRUE;
+  f13.subgroupSizeControl = VK_TRUE;
+  f13.computeFullSubgroups = VK_TRUE;
   f13.maintenance4 = VK_TRUE;  // glslc states workgroup sizes in its way
   auto f12 = structure<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &f13);
   f12.storageBuffer8BitAccess = VK_TRUE;
@@ -61,6 +76,10 @@ Result<std::unique_ptr<Device>> Device::make(std::shared_ptr<Instance> instance,
   if (const VkResult r = device->fn_.vkCreatePipelineCache(device->handle_, &cache, nullptr, &device->pipelines_);
       r != VK_SUCCESS)
     return device->error("making a pipeline cache", r);
+  // What the driver took of it, which is next to nothing if the file is of another card or driver.
+  std::size_t taken = 0;
+  if (device->fn_.vkGetPipelineCacheData(device->handle_, device->pipelines_, &taken, nullptr) == VK_SUCCESS)
+    device->pipelines_found_ = taken;
   return device;
 }
 
@@ -76,8 +95,11 @@ void Device::keep_pipelines() const {
 Device::~Device() {
   if (handle_ == VK_NULL_HANDLE) return;
   // A device that hangs can neither be waited for without end nor destroyed: it is left to the end of the program.
-  if (timeline_ != VK_NULL_HANDLE) (void)wait(last_);
-  if (hung_) return;
+  if (timeline_ != VK_NULL_HANDLE) (void)wait(last_.load());
+  if (hung_) {
+    keep_to_the_end(std::move(instance_));
+    return;
+  }
   if (pipelines_ != VK_NULL_HANDLE) fn_.vkDestroyPipelineCache(handle_, pipelines_, nullptr);
   if (timeline_ != VK_NULL_HANDLE) fn_.vkDestroySemaphore(handle_, timeline_, nullptr);
   fn_.vkDestroyDevice(handle_, nullptr);

@@ -1,6 +1,7 @@
 // Device: one opened Vulkan device with its one compute queue.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -30,10 +31,15 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   const DeviceInfo& info() const { return physical_.info; }
-  int least_subgroup_size() const { return physical_.least_subgroup_size; }
+  /// The size at which kernels can be made to run that is nearest to `wanted`, a power of two.
+  int subgroup_size_near(int wanted) const {
+    return std::clamp(wanted, physical_.least_subgroup_size, physical_.most_subgroup_size);
+  }
   /// Errors  not finished within `timeout_ns`, after which it is not waited for again; device lost
   Result<void> wait(Ticket ticket, std::int64_t timeout_ns = kWaitNs) const;
   bool finished(Ticket ticket) const;
+  /// Whether a wait for its work ended without the work: it may still be writing, so that nothing of it can be destroyed.
+  bool hung() const { return hung_; }
   /// Keeps what kernels were compiled to for the next start, if there is more of it than was found.
   void keep_pipelines() const;
 
@@ -69,7 +75,7 @@ class Device {
   VkDevice handle_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
   VkSemaphore timeline_ = VK_NULL_HANDLE;  // counts finished tickets
-  Ticket last_ = 0;
+  std::atomic<Ticket> last_ = 0;
   DeviceFunctions fn_;
   VkPhysicalDeviceMemoryProperties memory_{};
   mutable std::array<std::array<std::weak_ptr<MemoryBlock>, VK_MAX_MEMORY_TYPES>, 2> last_blocks_;

@@ -175,13 +175,13 @@ PhysicalDevice Instance::inspect(VkPhysicalDevice handle) const {
   out.info.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
   out.info.subgroup_size = static_cast<int>(subgroup.subgroupSize);
   out.least_subgroup_size = static_cast<int>(sizes.minSubgroupSize);
+  out.most_subgroup_size = static_cast<int>(sizes.maxSubgroupSize);
 
-  constexpr VkSubgroupFeatureFlags kSubgroup = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_VOTE_BIT |
-                                               VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT |
-                                               VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+  constexpr VkSubgroupFeatureFlags kSubgroup =
+      VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
   need((subgroup.subgroupSupportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0 &&
            (subgroup.subgroupSupportedOperations & kSubgroup) == kSubgroup,
-       "subgroup vote, arithmetic, ballot and shuffle in compute shaders");
+       "subgroup arithmetic and shuffle in compute shaders");
 
   auto f13 = structure<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
   auto f12 = structure<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &f13);
@@ -194,6 +194,9 @@ PhysicalDevice Instance::inspect(VkPhysicalDevice handle) const {
   need(f12.timelineSemaphore, "timelineSemaphore");
   need(f13.synchronization2, "synchronization2");
   need(f13.maintenance4, "maintenance4");
+  need(f13.subgroupSizeControl && f13.computeFullSubgroups &&
+           (sizes.requiredSubgroupSizeStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0,
+       "subgroups of a size that is asked for, and full ones");
   need(basic.limits.maxPerStageDescriptorStorageBuffers >= kStorageBuffers, "8 storage buffers in a shader");
 
   std::uint32_t count = 0;

@@ -25,10 +25,10 @@ struct PhysicalDevice {
   VkPhysicalDevice handle = VK_NULL_HANDLE;
   DeviceInfo info;
   std::uint32_t queue_family = 0;
-  int least_subgroup_size = 0;  // a kernel may run at any power of two from here on
-  std::string pipelines_id;     // of what it compiles kernels to: device and driver
-  double tick_ns = 0;           // of its time stamps; 0: it has none
-  std::uint64_t tick_mask = 0;  // the bits of a time stamp that count
+  int least_subgroup_size = 0, most_subgroup_size = 0;  // a kernel can be made to run at any power of two of these
+  std::string pipelines_id;                             // of what it compiles kernels to: device and driver
+  double tick_ns = 0;                                   // of its time stamps; 0: it has none
+  std::uint64_t tick_mask = 0;                          // the bits of a time stamp that count
 };
 
 /// The loader stays open until the program ends: some drivers cannot be unloaded cleanly.

@@ -4,9 +4,12 @@
 
 #include <vector>
 
+#include "core/check.h"
+
 namespace duo::vk {
 
 Result<Kernel> Kernel::make(const Device& device, const KernelSource& source) {
+  DUO_CHECK(source.push_bytes <= 128);
   const std::string tried = fmt::format("making kernel \"{}\"", source.name);
   const DeviceFunctions& fn = device.fn();
   Kernel out;
@@ -49,6 +52,13 @@ Result<Kernel> Kernel::make(const Device& device, const KernelSource& source) {
   info.stage.module = shader.get();
   info.stage.pName = "main";
   info.stage.pSpecializationInfo = &constants;
+  auto subgroup = structure<VkPipelineShaderStageRequiredSubgroupSizeCreateInfo>(
+      VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO);
+  subgroup.requiredSubgroupSize = static_cast<std::uint32_t>(source.subgroup_size);
+  if (source.subgroup_size > 0) {
+    info.stage.flags = VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT;
+    info.stage.pNext = &subgroup;
+  }
   info.layout = out.layout_.get();
   VkPipeline pipeline = VK_NULL_HANDLE;
   if (const VkResult r = fn.vkCreateComputePipelines(device.handle(), device.pipelines(), 1, &info, nullptr, &pipeline);

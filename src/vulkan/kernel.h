@@ -16,6 +16,7 @@ struct KernelSource {
   int buffers;
   std::size_t push_bytes;                         // <= 128
   std::span<const std::uint32_t> constants = {};  // specialisation constants 0, 1, …
+  int subgroup_size = 0;                          // the one it must run at, with all subgroups full; 0: any
 };
 
 /// Move-only; must outlive the recordings that use it.

@@ -1,4 +1,4 @@
-// Owned: a Vulkan object that is destroyed with its owner.
+// Owned: a Vulkan object that is destroyed with its owner; left as it is where a hung device may still use it.
 #pragma once
 
 #include <string>
@@ -30,7 +30,7 @@ class Owned {
     return *this;
   }
   ~Owned() {
-    if (handle_ != VK_NULL_HANDLE) (device_->fn().*Destroy)(device_->handle(), handle_, nullptr);
+    if (handle_ != VK_NULL_HANDLE && !device_->hung()) (device_->fn().*Destroy)(device_->handle(), handle_, nullptr);
   }
   Handle get() const { return handle_; }
 

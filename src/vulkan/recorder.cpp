@@ -1,5 +1,7 @@
 #include "vulkan/recorder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -14,6 +16,7 @@ constexpr VkAccessFlags2 kWrites = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACC
 constexpr VkAccessFlags2 kReads =
     VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT;
 constexpr std::uint32_t kSetsPerPool = 32, kBuffersPerSet = 8;
+constexpr int kMostGroups = 65535;  // along each axis: what every device takes
 
 }  // namespace
 
@@ -78,6 +81,10 @@ bool Recorder::bind(const Kernel& kernel, std::span<const std::byte> push, std::
 
 void Recorder::dispatch_bytes(const Kernel& kernel, std::span<const std::byte> push, std::span<const Use> uses, Size groups) {
   DUO_CHECK(!groups.empty());
+  if (failed_ && std::max(groups.width, groups.height) > kMostGroups)
+    failed_ = Error{ErrorCode::kUnsupported, fmt::format("recording {}x{} workgroups: at most {} along a side fit: use smaller "
+                                                         "pictures or a CPU engine",
+                                                         groups.width, groups.height, kMostGroups)};
   if (bind(kernel, push, uses, uses))
     device_->fn().vkCmdDispatch(commands_, static_cast<std::uint32_t>(groups.width), static_cast<std::uint32_t>(groups.height),
                                 1);

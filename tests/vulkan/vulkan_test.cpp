@@ -241,6 +241,20 @@ TEST(Recorder, MakesMoreSetsThanOnePoolHolds) {
   });
 }
 
+TEST(Recorder, RefusesMoreWorkgroupsThanEveryDeviceTakes) {
+  test::each_device([](vk::Device& device, const std::string&) {
+    const Size size{1, 65536 * vk::kGroupHeight};
+    const auto median = must(vk::Median::make(device));
+    const OnDevice<std::uint8_t> a(device, size, "a"), b(device, size, "b");
+    auto recorder = must(vk::Recorder::make(device));
+    recorder.begin();
+    median.record(recorder, a.view(), b.view(), size);
+    const auto ended = recorder.end();
+    ASSERT_FALSE(ended.has_value());
+    EXPECT_EQ(ended.error().code, ErrorCode::kUnsupported);
+  });
+}
+
 TEST(Timer, TimesEachPart) {
   test::each_device([](vk::Device& device, const std::string&) {
     const Size size{320, 240};

@@ -15,22 +15,25 @@ layout(push_constant) uniform Push { SemiGlobalPathPush p; };
 #include "stages/semi_global/semi_global_path.glsl"
 
 // Read a pixel ahead of where they are used.
-uint cost_ahead[kWords];
+uint cost_ahead[kWords], sum_ahead[kWords];
 int gray_ahead;
+
+uint sum[kWords];  // what the volume holds of the pixel reached; 0 without `adds`
 
 void load(ivec2 at) {
   gray_ahead = int(left_planes[p.left.offset + at.y * p.left.stride + at.x] & 0xFF);
   const int cell = (at.y * p.width + at.x) * p.words;
-  for (int k = 0; k < kWords; ++k) cost_ahead[k] = word_of(k) < p.words ? costs[cell + word_of(k)] : 0xFFFFFFFF;
+  for (int k = 0; k < kWords; ++k) {
+    const bool there = word_of(k) < p.words;
+    cost_ahead[k] = there ? costs[cell + word_of(k)] : 0xFFFFFFFF;
+    sum_ahead[k] = there && p.adds != 0 ? volume[cell + word_of(k)] : 0;
+  }
 }
 
 void store(ivec2 at) {
   const int cell = (at.y * p.width + at.x) * p.words;
-  for (int k = 0; k < kWords; ++k) {
-    const int i = cell + word_of(k);
-    if (word_of(k) >= p.words) continue;
-    volume[i] = pack(p.adds != 0 ? min(path[k] + unpack(volume[i]), kMost) : path[k]);
-  }
+  for (int k = 0; k < kWords; ++k)
+    if (word_of(k) < p.words) volume[cell + word_of(k)] = pack(min(path[k] + unpack(sum[k]), kMost));
 }
 
 void walk(int line) {
@@ -42,7 +45,10 @@ void walk(int line) {
   for (int i = 0; i < steps; ++i) {
     const ivec2 here = at;
     const int gray_here = gray_ahead;
-    for (int k = 0; k < kWords; ++k) cost[k] = cost_ahead[k];
+    for (int k = 0; k < kWords; ++k) {
+      cost[k] = cost_ahead[k];
+      sum[k] = sum_ahead[k];
+    }
     at += ivec2(p.dx, p.dy);
     const bool leaves = at.x < 0 || at.x >= p.width;
     if (leaves) at.x = at.x < 0 ? p.width - 1 : 0;

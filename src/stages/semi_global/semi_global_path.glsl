@@ -1,7 +1,7 @@
 // A path that a subgroup walks: the path costs of the pixel it has reached, in registers. Word k gl_SubgroupSize + lane of the
 // pixel is the lane's k-th; those behind the last disparity stay at 255, which no other cost is above and no path goes through.
 
-layout(constant_id = 0) const int kWords = 1;  // of each lane, at the smallest subgroup size of the device
+layout(constant_id = 0) const int kWords = 1;  // of each lane, at the subgroup size that it is made for
 
 const uint kMost = 255;
 

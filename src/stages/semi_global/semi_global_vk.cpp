@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <bit>
+
 #include "stages/semi_global/semi_global_params.h"
 
 namespace duo::vk {
@@ -57,15 +59,17 @@ Result<SemiGlobal> SemiGlobal::make(const Device& device, int max_disparity, con
   SemiGlobal out;
   out.params_ = params;
   out.max_disparity_ = max_disparity;
-  out.paths_per_group_ = std::max(1, kPathGroup / device.info().subgroup_size);
-  const int lanes = device.least_subgroup_size();
-  const auto lane_words = static_cast<std::uint32_t>((words_for(max_disparity) + lanes - 1) / lanes);
+  // A word a lane where subgroups can be as large; larger ones would have lanes without work.
+  const int words = words_for(max_disparity), lanes = device.subgroup_size_near(std::min(std::bit_ceil(unsigned(words)), 32U));
+  out.paths_per_group_ = std::max(1, kPathGroup / lanes);
+  const auto lane_words = static_cast<std::uint32_t>((words + lanes - 1) / lanes);
   const std::uint32_t constants[] = {lane_words, static_cast<std::uint32_t>(volumes_for(params))};
   const std::span path_constants(constants, 1);
   DUO_TRY_ASSIGN(out.costs_, Kernel::make(device, {"semi-global costs", kCostsCode, 3, sizeof(SemiGlobalCostsPush)}));
   DUO_TRY_ASSIGN(out.path_,
-                 Kernel::make(device, {"semi-global path", kPathCode, 3, sizeof(SemiGlobalPathPush), path_constants}));
-  DUO_TRY_ASSIGN(out.winners_, Kernel::make(device, {"semi-global winners", kCode, 8, sizeof(SemiGlobalPush), constants}));
+                 Kernel::make(device, {"semi-global path", kPathCode, 3, sizeof(SemiGlobalPathPush), path_constants, lanes}));
+  DUO_TRY_ASSIGN(out.winners_,
+                 Kernel::make(device, {"semi-global winners", kCode, 8, sizeof(SemiGlobalPush), constants, lanes}));
   DUO_TRY_ASSIGN(out.fine_, Kernel::make(device, {"semi-global fine", kFineCode, 4, sizeof(SemiGlobalFinePush)}));
   return out;
 }

@@ -66,9 +66,9 @@ float quotient(float a, float b) {
   return rounded;
 }
 
-// One step of Newton's from the device's own root; 0 for 0.
+// One step of Newton's from the device's own root; 0 for 0, and for what devices may flush to 0 on the way.
 vec2 root_of(vec2 a) {
-  if (a.x <= 0) return vec2(0);
+  if (a.x < 1e-36) return vec2(0);
   const float first = sqrt(a.x);
   const vec2 rest = subtract(a, product_of(first, first));
   return sum_of(first, rest.x / (2 * first));
