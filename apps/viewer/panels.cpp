@@ -136,11 +136,15 @@ std::optional<Clicks::Click> Panels::draw_camera(const Cell& cell, const Clicks&
     list.AddText({cell.caption.x, cell.caption.y + 5 * scale_}, kAccent, clicks.prompt().c_str());
   else
     put_joints(cell);
-  if (!clicks.wanted() || !ImGui::IsWindowHovered() || !ImGui::IsMouseHoveringRect(fit.from, fit.to)) return {};
+  const bool over = clicks.wanted() && ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(fit.from, fit.to);
+  pressed_ = pressed_ || (over && ImGui::IsMouseClicked(ImGuiMouseButton_Left));
+  const bool let_go = pressed_ && !ImGui::IsMouseDown(ImGuiMouseButton_Left);
+  if (let_go) pressed_ = false;
+  if (!over) return {};
   const ImVec2 mouse = ImGui::GetMousePos();
   text_on_picture(list, {mouse.x + 14 * scale_, mouse.y + 10 * scale_}, kText, clicks.name(clicks.made().size()).c_str());
   list.AddCircle(mouse, 7 * scale_, kAccent, 0, 2 * scale_);
-  if (!ImGui::IsMouseClicked(ImGuiMouseButton_Left)) return {};
+  if (!let_go) return {};
   return Clicks::Click{(mouse.x - fit.from.x) / fit.scale - 0.5, (mouse.y - fit.from.y) / fit.scale - 0.5};
 }
 
@@ -190,16 +194,19 @@ void Panels::draw_clicks(const Fit& fit, const Clicks& clicks) const {
   }
 }
 
-/// "hand 1.32 m ±2 cm" for each joint of the first arm.
+/// "hand 1.32 m ±2 cm" for each joint of the first arm; where that is too wide, without the sigma.
 void Panels::put_joints(const Cell& cell) const {
   if (shown_->arms.empty()) return;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   for (std::size_t j = 0; j < kArmJoints; ++j) {
     const Keypoint& k = shown_->arms[0].joints[j];
-    const std::string text = k.state == JointState::kLost ? fmt::format("{} lost", kJointNames[j])
-                                                          : fmt::format("{} {:.2f} m \u00b1{:.0f} cm", kJointNames[j],
-                                                                        k.p_in_rig_m.z, std::ceil(100 * k.sigma_m));
-    const float x = cell.caption.x + static_cast<float>(j) * cell.caption_width / kArmJoints;
+    const float width = cell.caption_width / kArmJoints, x = cell.caption.x + static_cast<float>(j) * width;
+    std::string text = fmt::format("{} lost", kJointNames[j]);
+    if (k.state != JointState::kLost) {
+      text = fmt::format("{} {:.2f} m", kJointNames[j], k.p_in_rig_m.z);
+      const std::string exact = fmt::format("{} \u00b1{:.0f} cm", text, std::ceil(100 * k.sigma_m));
+      if (ImGui::CalcTextSize(exact.c_str()).x < width) text = exact;
+    }
     list.AddText({x, cell.caption.y + 5 * scale_}, color_of(k.state), text.c_str());
   }
 }

@@ -21,6 +21,8 @@ class Panels {
   Result<void> show(std::shared_ptr<const Shown> shown);
   /// Between two corners of ImGui's current window; a click in raw pixels, when there was one.
   Result<std::optional<Clicks::Click>> draw(ImVec2 from, ImVec2 to, const Clicks& clicks);
+  /// A click has begun: it is where the button is let go.
+  bool pressed() const { return pressed_; }
 
  private:
   /// A panel: its title above, its picture, its caption below.
@@ -58,7 +60,7 @@ class Panels {
   DisparityRange range_;
   Orbit orbit_;
   Orbit drawn_orbit_;
-  bool cloud_stale_ = true;
+  bool cloud_stale_ = true, pressed_ = false;
   Image<Rgb8> painted_, points_;
   Texture camera_, depth_, region_, hue_, cloud_, turbo_strip_, hue_strip_;
 };

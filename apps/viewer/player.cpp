@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "rig_report.h"
+
 namespace duo::app::view {
 namespace {
 
@@ -31,8 +33,9 @@ class OnePair final : public PairSource {
 
 Picture copy_of(const Picture& picture) { return {picture.pixels.clone(), picture.t_ns, picture.sequence}; }
 
-Result<ArmRun> open_run(const PlayerOptions& options) {
+Result<ArmRun> open_run(const PlayerOptions& options, Recording& recording) {
   DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, options.rig));
+  input.pairs = std::make_unique<Tap>(std::move(input.pairs), recording);
   return ArmRun::open(std::move(input), options.arm);
 }
 
@@ -42,7 +45,7 @@ double now_ms() { return clock_ms(CLOCK_MONOTONIC); }
 
 Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options) {
   std::unique_ptr<Player> player(new Player(options));
-  DUO_TRY_ASSIGN(ArmRun run, open_run(options));
+  DUO_TRY_ASSIGN(ArmRun run, open_run(options, player->recording_));
   player->header_ = run.header();
   player->rig_ = run.rig();
   player->skew_ = SkewWatch(run.header().rectified.baseline_m);
@@ -163,6 +166,14 @@ void Player::set(const std::vector<std::pair<std::string, double>>& parameters) 
   });
 }
 
+void Player::record(bool on) {
+  post([this, on] {
+    if (!on) return recording_.stop();
+    if (still_ || resting()) return;
+    recording_.start({.frame_s = header_.frame_s, .rig = rig_, .date = live_ ? date_now() : ""});
+  });
+}
+
 void Player::check_rig() {
   post([this] {
     if (!has_frame_ || !run_) return;
@@ -195,8 +206,11 @@ Result<Exit> Player::finish() {
   wished_.notify_all();
   if (thread_.joinable()) thread_.join();
   if (checking_.valid()) checking_.wait();
+  recording_.stop();
+  const Result<void> lines = lines_ ? lines_->finish() : Result<void>();
   if (failed_) return *failed_;
-  if (lines_) DUO_TRY(lines_->finish());
+  DUO_TRY(lines);
+  if (const auto failure = recording_.failure()) return *failure;
   return cut_ ? Exit::kCut : Exit::kOk;
 }
 
@@ -219,7 +233,6 @@ void Player::run() {
     const bool moves = status_.state == PlayState::kPlaying || (step_ && status_.state == PlayState::kPaused);
     const double wait_ms = step_ || live_ ? 0 : next_ms_ - now_ms();
     if (moves && wait_ms <= 0) {
-      step_ = false;
       lock.unlock();
       advance();
       options_.on_news();
@@ -242,7 +255,8 @@ void Player::advance() {
     if (live_) status_.event = run_->frames().warning();
     if (status_.event.empty() && now_ms() < skew_until_ms_) status_.event = skew_words_;
   }
-  if (*next == Next::kNothing) return;
+  if (*next == Next::kNothing) return;  // a step is still to come
+  step_ = false;
   if (*next != Next::kPicture) return at_end(*next);
   has_frame_ = true;
   const double now = now_ms();
@@ -264,6 +278,7 @@ void Player::advance() {
 }
 
 void Player::at_end(Next end) {
+  recording_.stop();
   cut_ = cut_ || end == Next::kCut;
   warning_ = run_->frames().warning();
   {
@@ -281,7 +296,8 @@ void Player::at_end(Next end) {
 bool Player::reopen() {
   const std::int64_t frames = run_ && has_frame_ ? static_cast<std::int64_t>(run_->frames().last().pair.sequence) + 1 : 0;
   run_.reset();  // before another: a file may be a device
-  auto run = open_run(options_);
+  recording_.stop();
+  auto run = open_run(options_, recording_);
   if (!run) {
     fail(run.error(), true);
     return false;
@@ -326,6 +342,7 @@ void Player::show(double interval_ms) {
 
 /// Says it in the window; `for_good`: nothing more comes.
 void Player::fail(const Error& error, bool for_good) {
+  if (for_good) recording_.stop();
   if (for_good || error.code == ErrorCode::kWriteFailed) failed_ = failed_.value_or(error);
   const std::lock_guard lock(mutex_);
   status_.problem = error.what;

@@ -14,6 +14,7 @@
 
 #include "arm_run.h"
 #include "duoptic/rig_health.h"
+#include "recording.h"
 #include "skew_watch.h"
 
 namespace duo::app::view {
@@ -66,10 +67,12 @@ class Player {
   const TrackHeader& header() const { return header_; }
   const Rig& rig() const { return rig_; }
   bool live() const { return live_; }
+  bool still() const { return still_; }
   std::int64_t count() const { return count_; }  // pairs; 0: not known
 
   std::shared_ptr<const Shown> newest() const;
   PlayerStatus status() const;
+  RecordingStatus recording() const { return recording_.status(); }
 
   void play(bool on);
   void step();
@@ -79,12 +82,14 @@ class Player {
   void select(const std::vector<ArmSelection>& arms);
   void forget_arms();
   void set(const std::vector<std::pair<std::string, double>>& parameters);
+  /// Live, all pairs that the source gives, paused or not; of files those that are read, up to the end. Not of one picture.
+  void record(bool on);
   /// Looks at the last pair for what the rig is worth; takes a second or so beside the playing.
   void check_rig();
 
-  /// Ends the playing and completes the lines. Call it once.
+  /// Ends the playing and completes lines and recording. Call it once.
   ///
-  /// Errors  what ended the playing before its time; lines that could not be written
+  /// Errors  what ended the playing before its time; lines or recordings that could not be written
   Result<Exit> finish();
   /// After finish(): why the stream ended before its files did; empty when it did not.
   const std::string& warning() const { return warning_; }
@@ -106,6 +111,8 @@ class Player {
   Rig rig_;
   bool live_ = false, still_ = false;
   std::int64_t count_ = 0;
+
+  Recording recording_;
 
   // The thread's own.
   std::optional<ArmRun> run_;

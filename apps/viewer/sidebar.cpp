@@ -72,6 +72,7 @@ bool Sidebar::draw(Player& player, Clicks& clicks, const Shown* shown, const std
   const PlayerStatus status = player.status();
   put_clicks(player, clicks, shown, status);
   put_playback(player, shown, status);
+  put_recording(player, status);
   put_joints(shown);
   put_speed();
   put_source(player, status);
@@ -149,6 +150,32 @@ void Sidebar::put_playback(Player& player, const Shown* shown, const PlayerStatu
                                         : playing ? ""
                                                   : ", paused")
                                 .c_str());
+}
+
+/// A button, and beside it a red dot and how long it has been on.
+void Sidebar::put_recording(Player& player, const PlayerStatus& status) const {
+  if (player.still()) return;
+  const RecordingStatus now = player.recording();
+  const float third = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
+  if (ImGui::Button(now.on ? "Stop" : "Record", {third, 0}) && (now.on || status.state != PlayState::kEnded))
+    player.record(!now.on);
+  const auto seconds = static_cast<int>(now.length_s);
+  const std::string amount = fmt::format("{}:{:02}, {} pairs, {:.1f} MB", seconds / 60, seconds % 60, now.pairs,
+                                         static_cast<double>(now.bytes) * 1e-6);
+  if (now.on) {
+    ImGui::SameLine();
+    const float size = ImGui::GetFrameHeight();
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    ImGui::GetWindowDrawList()->AddCircleFilled({from.x + size / 2, from.y + size / 2}, size / 4, kBad);
+    ImGui::Dummy({size, size});
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(amount.c_str());
+  }
+  if (!now.problem.empty())
+    colored(kBad, now.problem);
+  else if (!now.name.empty())
+    colored(kFaint, now.on ? "into " + now.name : now.pairs > 0 ? now.name + ": " + amount : "nothing recorded: no pair came");
 }
 
 void Sidebar::put_joints(const Shown* shown) const {

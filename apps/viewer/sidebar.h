@@ -25,6 +25,7 @@ class Sidebar {
  private:
   void put_clicks(Player& player, Clicks& clicks, const Shown* shown, const PlayerStatus& status);
   void put_playback(Player& player, const Shown* shown, const PlayerStatus& status);
+  void put_recording(Player& player, const PlayerStatus& status) const;
   void put_joints(const Shown* shown) const;
   void put_speed() const;
   void put_parameters(Player& player);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr char kFooter[] =
     "Click hand, elbow and shoulder in the left camera's picture, which stands still meanwhile; then the arm is tracked.\n"
-    "Keys: Space pause, Right one frame, Backspace undo a click, R restart, F12 screenshot, Q close.\n"
+    "Keys: Space pause, Right one frame, Backspace undo a click, R record, Home restart, F12 screenshot, Q close.\n"
     "With -o the tracked frames are written as track writes them, complete when the window closes.\n\n"
     "Examples:\n"
     "  duoptic view synthetic                                                        a rendered person, live\n"
@@ -98,6 +98,7 @@ class Viewer {
         const auto click,
         panels_.draw({margin, margin}, {io.DisplaySize.x - beside - 2 * margin, io.DisplaySize.y - margin}, clicks_));
     if (click) take_click(*click);
+    hold_while_clicking();
     ImGui::SetCursorScreenPos({io.DisplaySize.x - beside - margin, margin});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {10 * window_.scale(), 10 * window_.scale()});
     ImGui::BeginChild("controls", {beside, io.DisplaySize.y - 2 * margin}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
@@ -111,22 +112,25 @@ class Viewer {
   }
 
   void put_title() {
-    window_.set_title(!shown_                 ? "duoptic view"
-                      : clicks_.wanted()      ? "duoptic view: " + clicks_.prompt()
-                      : !shown_->arms.empty() ? "duoptic view: tracking"
-                                              : "duoptic view");
+    const std::string doing = !shown_                 ? ""
+                              : clicks_.wanted()      ? ": " + clicks_.prompt()
+                              : !shown_->arms.empty() ? ": tracking"
+                                                      : "";
+    window_.set_title("duoptic view" + doing + (player_.recording().on ? ", recording" : ""));
   }
 
-  /// The picture stands still from the first click to the last, which are then of one frame.
   void take_click(Clicks::Click click) {
-    if (clicks_.made().empty()) {
-      resume_ = player_.status().state == PlayState::kPlaying;
-      player_.play(false);
-    }
     if (!clicks_.add(click)) return;
     player_.select(clicks_.selections());
     clicks_.stop();
-    if (resume_) player_.play(true);
+  }
+
+  /// The picture stands still from the first click, when its button goes down, to the last: all are then of one frame.
+  void hold_while_clicking() {
+    const bool hold = clicks_.wanted() && (panels_.pressed() || !clicks_.made().empty());
+    if (hold == std::exchange(held_, hold)) return;
+    if (hold) resume_ = player_.status().state == PlayState::kPlaying;
+    if (resume_) player_.play(!hold);
   }
 
   void take_keys() {
@@ -136,7 +140,8 @@ class Viewer {
       if (key == GLFW_KEY_RIGHT && state == PlayState::kPlaying) player_.play(false);
       if (key == GLFW_KEY_RIGHT) player_.step();
       if (key == GLFW_KEY_BACKSPACE && clicks_.wanted()) clicks_.undo();
-      if (key == GLFW_KEY_R) player_.restart();
+      if (key == GLFW_KEY_R) player_.record(!player_.recording().on);
+      if (key == GLFW_KEY_HOME) player_.restart();
       if (key == GLFW_KEY_F12) window_.want_screenshot();
       if (key == GLFW_KEY_Q) done_ = true;
     }
@@ -173,7 +178,7 @@ class Viewer {
   std::shared_ptr<const Shown> shown_;
   std::string note_;
   int refused_ = 0;  // selections, so far
-  bool resume_ = true, done_ = false;
+  bool held_ = false, resume_ = false, done_ = false;
 };
 
 Result<Exit> run(Options options, const CLI::App& app) {

@@ -2,6 +2,7 @@
 #ifndef DUO_CORE_SIFT_LIST_H
 #define DUO_CORE_SIFT_LIST_H
 #ifdef __cplusplus
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <span>
@@ -41,7 +42,8 @@ inline void write_sift_list(const SiftPoints& points, const SiftListShape& shape
   const std::int32_t head[kSiftHeadWords] = {points.count, points.overflow};
   std::memcpy(buffer.data() + static_cast<std::size_t>(list) * sizeof head, head, sizeof head);
   std::byte* const to = buffer.data() + 4 * kSiftHeadWords * static_cast<std::size_t>(shape.lists);
-  std::memcpy(to + first * sizeof(SiftPoint), points.points.data(), static_cast<std::size_t>(points.count) * sizeof(SiftPoint));
+  std::copy_n(reinterpret_cast<const std::byte*>(points.points.data()),
+              static_cast<std::size_t>(points.count) * sizeof(SiftPoint), to + first * sizeof(SiftPoint));
   std::byte* descriptor = buffer.data() + sift_point_bytes(shape) + first * SiftPoints::kDescriptor;
   for (int i = 0; i < points.count; ++i, descriptor += SiftPoints::kDescriptor)
     std::memcpy(descriptor, points.descriptors.row(i), SiftPoints::kDescriptor);
@@ -57,8 +59,8 @@ inline void read_sift_list(std::span<const std::byte> buffer, const SiftListShap
   points.overflow = head[1];
   DUO_CHECK(points.count >= 0 && points.count <= shape.capacity && points.count <= points.capacity());
   const std::byte* const from = buffer.data() + 4 * kSiftHeadWords * static_cast<std::size_t>(shape.lists);
-  std::memcpy(points.points.data(), from + first * sizeof(SiftPoint),
-              static_cast<std::size_t>(points.count) * sizeof(SiftPoint));
+  std::copy_n(from + first * sizeof(SiftPoint), static_cast<std::size_t>(points.count) * sizeof(SiftPoint),
+              reinterpret_cast<std::byte*>(points.points.data()));
   if (buffer.size() < sift_list_bytes(shape)) return;
   const std::byte* descriptor = buffer.data() + sift_point_bytes(shape) + first * SiftPoints::kDescriptor;
   for (int i = 0; i < points.count; ++i, descriptor += SiftPoints::kDescriptor)
