@@ -253,7 +253,7 @@ void Player::advance() {
     status_.silent = *next == Next::kNothing;
     status_.dropped = run_->frames().dropped();
     if (live_) status_.event = run_->frames().warning();
-    if (status_.event.empty() && now_ms() < skew_until_ms_) status_.event = skew_words_;
+    if (status_.event.empty() && now_ms() < passing_until_ms_) status_.event = passing_words_;
   }
   if (*next == Next::kNothing) return;  // a step is still to come
   step_ = false;
@@ -269,10 +269,12 @@ void Player::advance() {
   if (!live_ && selected_ && selected_->first == number) (void)run_->select(selected_->second);
   arms_ = run_->track();
   if (!arms_.empty()) write_line(run_->tracked(arms_));
-  if (const auto warning = live_ ? skew_.see(run_->tracked(arms_)) : std::nullopt) {
+  std::string words = run_->frames().last().event;
+  if (const auto warning = live_ ? skew_.see(run_->tracked(arms_)) : std::nullopt) words += *warning;
+  if (!words.empty()) {
     constexpr double kRead_ms = 10'000;
-    skew_words_ = *warning;
-    skew_until_ms_ = now + kRead_ms;
+    passing_words_ = std::move(words);
+    passing_until_ms_ = now + kRead_ms;
   }
   show(interval);
 }

@@ -125,8 +125,8 @@ class Player {
   double next_ms_ = 0, last_ms_ = 0;  // when the next frame is due and when the last came, CLOCK_MONOTONIC
   std::int64_t written_ = 0;
   SkewWatch skew_{1};
-  std::string skew_words_;
-  double skew_until_ms_ = 0;
+  std::string passing_words_;
+  double passing_until_ms_ = 0;
   std::optional<Error> failed_;
   bool cut_ = false;
   std::string warning_;
