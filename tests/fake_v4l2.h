@@ -43,7 +43,8 @@ class FakeV4l2 {
   std::function<bool()> plugged = [] { return true; };
 
   std::mutex& mutex() { return mutex_; }
-  int opens = 0, closes = 0, maps = 0, unmaps = 0;  // must be even at the end
+  int opens = 0, closes = 0, maps = 0, unmaps = 0;   // must be even at the end
+  static constexpr std::uint32_t kNv12Padding = 16;  // bytes after each row
   std::uint32_t streamed() const { return format_.fourcc; }
 
   bool open() {
@@ -205,7 +206,9 @@ class FakeV4l2 {
     pix.pixelformat = format_.fourcc;
     pix.width = format_.width;
     pix.height = format_.height;
-    pix.bytesperline = format_.fourcc == V4L2_PIX_FMT_MJPEG ? 0 : 2 * format_.width;
+    pix.bytesperline = format_.fourcc == V4L2_PIX_FMT_MJPEG  ? 0
+                       : format_.fourcc == V4L2_PIX_FMT_NV12 ? format_.width + kNv12Padding
+                                                             : 2 * format_.width;
     pix.sizeimage = 2 * format_.width * format_.height;
     return 0;
   }

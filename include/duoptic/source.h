@@ -79,8 +79,8 @@ class PairSource {
 /// Opens LEFT and RIGHT (two pictures, two videos or two live sources of the same size); an empty `right` means that `left`
 /// holds both views: as two video tracks, which is a recording and may bring its rig, or side by side. A recording that was
 /// killed or cut gives its whole pairs and then Next::kCut. Two cameras share exposure, gain and white balance: the left one's,
-/// after a second. "synthetic", "synthetic:SCRIPT" or "synthetic:SCRIPT:WIDTHxHEIGHT" alone is the person of `duoptic synth`,
-/// live.
+/// after a second. "synthetic", "synthetic:SCRIPT", "synthetic:SCRIPT:WIDTHxHEIGHT" or "synthetic:SCRIPT:WIDTHxHEIGHT:PAIRS"
+/// alone is the person of `duoptic synth`, live: that many pairs forth and back, 60 when not said.
 ///
 /// Errors  those of open_source(); a recording's rig that cannot be one; sizes differ; a picture and a video, a file and a live
 ///         source, one camera twice; odd width side by side

@@ -1,8 +1,10 @@
 // Reading with libav: decoders, and their frames as our pictures.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
+#include "core/capture_mark.h"
 #include "core/libav.h"
 #include "duoptic/frame.h"
 #include "duoptic/result.h"
@@ -33,6 +35,13 @@ Decoder open_decoder(AVCodecID id, Configure&& configure) {
 /// True when the decoder itself says that parts of the picture are missing or guessed.
 inline bool is_damaged(const AVFrame& frame) {
   return (frame.flags & AV_FRAME_FLAG_CORRUPT) != 0 || frame.decode_error_flags != 0;
+}
+
+/// A time in `base` as nanoseconds; 0 when it is not known. What a damaged file says is cut to 31 years, so that sums of a few
+/// fit.
+inline TimeNs to_ns(std::int64_t t, AVRational base) {
+  if (t == AV_NOPTS_VALUE) return 0;
+  return std::clamp(av_rescale_q(t, base, AVRational{1, 1'000'000'000}), -CaptureMark::kMost_ns, CaptureMark::kMost_ns);
 }
 
 /// Turns decoded frames of any pixel format into Rgb8: 16-bit and gray converted, alpha dropped; the same bits on every

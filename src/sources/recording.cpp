@@ -53,8 +53,6 @@ Result<std::optional<Rig>> TwoTracks::rig(const std::string& name) const {
 
 namespace {
 
-constexpr AVRational kNs = {1, 1'000'000'000};
-
 /// True when a picture of a file of ours at `last_ns` is the last that the file had when it was finished: its length is up to
 /// where that picture ends, and a free-running right camera is half a picture off.
 bool is_last(const TwoTracks& tracks, TimeNs last_ns) {
@@ -68,7 +66,7 @@ std::int64_t pairs_in_index(const TwoTracks& tracks) {
   if (av_seek_frame(tracks.container.get(), left->index, 0, 0) < 0) return 0;
   const int entries = avformat_index_get_entries_count(left);
   const AVIndexEntry* last = entries > 0 ? avformat_index_get_entry(left, entries - 1) : nullptr;
-  return last != nullptr && is_last(tracks, av_rescale_q(last->timestamp, left->time_base, kNs)) ? entries : 0;
+  return last != nullptr && is_last(tracks, av::to_ns(last->timestamp, left->time_base)) ? entries : 0;
 }
 
 /// One track's pictures as they pass by.
@@ -80,14 +78,15 @@ struct Tally {
 
   void add(const AVPacket& packet, AVRational base) {
     const auto mark = CaptureMark::of(packet);
-    last_ns = packet.pts == AV_NOPTS_VALUE ? 0 : av_rescale_q(packet.pts, base, kNs);
+    last_ns = av::to_ns(packet.pts, base);
     t_ns.push_back(mark ? mark->t_ns : last_ns);
     last = mark ? mark->sequence : static_cast<std::uint64_t>(view.pictures);
     if (view.pictures++ == 0) first = last;
   }
   void finish() {
-    if (view.pictures > 0)
-      view.missing = std::max<std::int64_t>(static_cast<std::int64_t>(last - first) + 1 - view.pictures, 0);
+    if (view.pictures == 0) return;
+    const auto after_first = std::max<std::int64_t>(static_cast<std::int64_t>(last - first), 0);
+    view.missing = std::max<std::int64_t>(after_first - view.pictures + 1, 0);
   }
 };
 

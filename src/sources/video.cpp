@@ -20,11 +20,6 @@ Error unreadable(const std::filesystem::path& path, const std::string& why) {
   return Error{ErrorCode::kBadInput, fmt::format("cannot read video {}: {}", path.string(), why)};
 }
 
-/// A time in `base` as nanoseconds; 0 when it is not known.
-TimeNs to_ns(std::int64_t t, AVRational base) {
-  return t == AV_NOPTS_VALUE ? 0 : av_rescale_q(t, base, AVRational{1, 1'000'000'000});
-}
-
 class VideoFile final : public Source {
  public:
   Result<void> open(const std::filesystem::path& path, std::optional<int> track);
@@ -44,7 +39,7 @@ class VideoFile final : public Source {
   TimeNs frame_ns() const {
     if (recorded_frame_ns_ > 0) return recorded_frame_ns_;
     const AVRational rate = stream().avg_frame_rate;
-    return rate.num > 0 && rate.den > 0 ? to_ns(1, av_inv_q(rate)) : 33'333'333;
+    return rate.num > 0 && rate.den > 0 ? std::max<TimeNs>(av::to_ns(1, av_inv_q(rate)), 1) : 33'333'333;
   }
   const AVStream& stream() const { return *container_->streams[stream_]; }
 
@@ -119,17 +114,19 @@ std::int64_t VideoFile::announced_packets() const {
 /// Where the video stream should end by the container's durations; 0 when it does not say.
 TimeNs VideoFile::announced_end_ns() const {
   const AVStream& s = stream();
-  const TimeNs start = to_ns(s.start_time, s.time_base);
-  if (s.duration > 0) return start + to_ns(s.duration, s.time_base);
+  const TimeNs start = av::to_ns(s.start_time, s.time_base);
+  if (s.duration > 0) return start + av::to_ns(s.duration, s.time_base);
   if (std::strstr(container_->iformat->name, "matroska") == nullptr) return 0;  // elsewhere an estimate from the file size
   if (const AVDictionaryEntry* tag = av_dict_get(s.metadata, "DURATION", nullptr, 0); tag != nullptr) {
     int hours = 0, minutes = 0;
     double seconds = 0;
-    if (std::sscanf(tag->value, "%d:%d:%lf", &hours, &minutes, &seconds) == 3)
-      return std::llround((hours * 3600 + minutes * 60 + seconds) * 1e9);
+    if (std::sscanf(tag->value, "%d:%d:%lf", &hours, &minutes, &seconds) == 3) {
+      const double end_s = hours * 3600.0 + minutes * 60.0 + seconds;
+      return end_s > 0 && end_s * 1e9 < CaptureMark::kMost_ns ? std::llround(end_s * 1e9) : 0;
+    }
   }
   // The container's own duration is the longest stream's: ours only when it is alone.
-  return container_->nb_streams == 1 && container_->duration > 0 ? start + container_->duration * 1000 : 0;
+  return container_->nb_streams == 1 && container_->duration > 0 ? start + av::to_ns(container_->duration, AV_TIME_BASE_Q) : 0;
 }
 
 VideoFile::Decoded VideoFile::end_of_file() const {
@@ -143,7 +140,7 @@ VideoFile::Decoded VideoFile::end_of_file() const {
 
 /// False for a picture after a hole: with B pictures a file cut may hold one whose predecessors in time were to come later.
 bool VideoFile::follows() {
-  const TimeNs t = to_ns(frame_->best_effort_timestamp, stream().time_base);
+  const TimeNs t = av::to_ns(frame_->best_effort_timestamp, stream().time_base);
   const bool hole = drained_ && decoder_->has_b_frames > 0 && t > shown_ns_ + frame_ns() * 3 / 2;
   shown_ns_ = t;
   return !hole;
@@ -167,8 +164,8 @@ VideoFile::Decoded VideoFile::decode() {
     if (whole) {
       ++packets_;
       const std::int64_t start = packet_->pts != AV_NOPTS_VALUE ? packet_->pts : packet_->dts;
-      const TimeNs duration = packet_->duration > 0 ? to_ns(packet_->duration, stream().time_base) : frame_ns();
-      end_ns_ = std::max(end_ns_, to_ns(start, stream().time_base) + duration);
+      const TimeNs duration = packet_->duration > 0 ? av::to_ns(packet_->duration, stream().time_base) : frame_ns();
+      end_ns_ = std::max(end_ns_, av::to_ns(start, stream().time_base) + duration);
     }
     cut_ = !whole && read != AVERROR_EOF;
     drained_ = !whole;
@@ -194,7 +191,7 @@ Result<Next> VideoFile::next(Picture& into) {
   if (!to_rgb_.convert(*frame_, into.pixels))
     return Error{ErrorCode::kUnsupported,
                  fmt::format("cannot read video {}: its size or kind of pixels is not supported", name_)};
-  into.t_ns = to_ns(frame_->best_effort_timestamp, stream().time_base);
+  into.t_ns = av::to_ns(frame_->best_effort_timestamp, stream().time_base);
   into.sequence = given_++;
   into.jpeg.clear();
   if (decoder_->codec_id == AV_CODEC_ID_MJPEG) into.jpeg.assign(sent_->data, sent_->data + sent_->size);

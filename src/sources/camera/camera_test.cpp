@@ -110,9 +110,9 @@ TEST(LiveCamera, DamagedPicturesAreLostNotGiven) {
     ++given;
     const std::int64_t n = number_at(picture.t_ns);
     EXPECT_EQ(n % 4, 0) << n;
-    EXPECT_TRUE(std::equal(whole.begin(), whole.end(), picture.jpeg.begin(), picture.jpeg.end(),
-                           [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; }))
-        << "as the camera sent it, without what fills the buffer";
+    EXPECT_TRUE(std::equal(whole.begin(), whole.end(), picture.jpeg.begin(), picture.jpeg.end(), [](char a, std::uint8_t b) {
+      return static_cast<std::uint8_t>(a) == b;
+    })) << "as the camera sent it, without what fills the buffer";
   }
   EXPECT_NEAR(static_cast<double>(camera->dropped()), 3 * given, 4);
   fake.damaged = [](std::int64_t) { return true; };
@@ -135,6 +135,37 @@ TEST(LiveCamera, ShortRawBuffersAndAWrongJpegSizeAreNoPictures) {
   const auto large = opened(desk, "camera:2", {});
   EXPECT_FALSE(picture_of(*large, desk, picture));
   EXPECT_NE(large->warning().find("another size than the 640x480"), std::string::npos) << large->warning();
+}
+
+/// Left red, right blue in the numbers of BT.601: 81, 90, 240 and 41, 240, 110. Each second buffer lacks its last row of
+/// colour.
+TEST(LiveCamera, Nv12HasItsColours) {
+  Desk desk;
+  desk.cameras[0].modes = {{V4L2_PIX_FMT_NV12, 64, 48, 30}, {V4L2_PIX_FMT_MJPEG, 64, 48, 30}};
+  desk.cameras[0].bytes = [](std::int64_t n, std::uint32_t) {
+    constexpr int kStride = 64 + FakeV4l2::kNv12Padding;
+    std::string bytes(std::size_t{kStride} * 72, '\0');
+    for (int y = 0; y < 72; ++y)
+      for (int x = 0; x < 64; ++x) {
+        const bool red = x < 32, first = x % 2 == 0;
+        const int value = y < 48 ? (red ? 81 : 41) : first ? (red ? 90 : 240) : (red ? 240 : 110);
+        bytes[static_cast<std::size_t>(y * kStride + x)] = static_cast<char>(value);
+      }
+    if (n % 2 == 1) bytes.resize(std::size_t{kStride} * 71);
+    return bytes;
+  };
+  const auto camera = opened(desk);
+  EXPECT_EQ(fourcc_text(desk.cameras[0].streamed()), "NV12");
+  Picture picture;
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(picture_of(*camera, desk, picture));
+    EXPECT_EQ(number_at(picture.t_ns) % 2, 0);
+    for (const int y : {0, 47}) {
+      const Rgb8 red = picture.pixels.at(y, 10), blue = picture.pixels.at(y, 50);
+      EXPECT_TRUE(red.r > 250 && red.g < 5 && red.b < 5) << int{red.r} << ' ' << int{red.g} << ' ' << int{red.b};
+      EXPECT_TRUE(blue.r < 5 && blue.g < 5 && blue.b > 250) << int{blue.r} << ' ' << int{blue.g} << ' ' << int{blue.b};
+    }
+  }
 }
 
 TEST(LiveCamera, WhatCannotBeOpenedIsSaidInOneLine) {

@@ -26,17 +26,22 @@ CameraDecoder::Outcome CameraDecoder::decode(const CameraFormat& format, std::st
 }
 
 CameraDecoder::Outcome CameraDecoder::decode_raw(const CameraFormat& format, std::string_view bytes, Picture& into) {
-  const std::size_t row_bytes = std::size_t{2} * static_cast<std::size_t>(format.size.width);
+  // NV12: a byte of brightness for each pixel, then a row of colour, two bytes for two pixels, for each two rows.
+  const bool nv12 = format.fourcc == fourcc_of("NV12");
+  const auto width = static_cast<std::size_t>(format.size.width), height = static_cast<std::size_t>(format.size.height);
+  const std::size_t row_bytes = nv12 ? (width + 1) / 2 * 2 : 2 * width, rows = nv12 ? height + (height + 1) / 2 : height;
   const std::size_t stride = std::max(static_cast<std::size_t>(std::max(format.stride_bytes, 0)), row_bytes);
-  if (!frame_ || bytes.size() < stride * static_cast<std::size_t>(format.size.height - 1) + row_bytes) return Outcome::kDamaged;
+  if (!frame_ || bytes.size() < stride * (rows - 1) + row_bytes) return Outcome::kDamaged;
   av_frame_unref(frame_.get());
-  frame_->format = format.fourcc == fourcc_of("UYVY") ? AV_PIX_FMT_UYVY422 : AV_PIX_FMT_YUYV422;
+  frame_->format = nv12 ? AV_PIX_FMT_NV12 : format.fourcc == fourcc_of("UYVY") ? AV_PIX_FMT_UYVY422 : AV_PIX_FMT_YUYV422;
   frame_->width = format.size.width;
   frame_->height = format.size.height;
   frame_->colorspace = AVCOL_SPC_SMPTE170M;
   frame_->color_range = AVCOL_RANGE_MPEG;
   frame_->data[0] = reinterpret_cast<std::uint8_t*>(const_cast<char*>(bytes.data()));  // NOLINT: read only
+  frame_->data[1] = nv12 ? frame_->data[0] + stride * height : nullptr;
   frame_->linesize[0] = static_cast<int>(stride);
+  frame_->linesize[1] = nv12 ? static_cast<int>(stride) : 0;
   into.jpeg.clear();
   return to_rgb_.convert(*frame_, into.pixels) ? Outcome::kWhole : Outcome::kDamaged;
 }

@@ -13,7 +13,7 @@ namespace duo {
 class CameraDecoder {
  public:
   /// What is read here, the better first.
-  static constexpr std::array kFourccs = {fourcc_of("YUYV"), fourcc_of("UYVY"), fourcc_of("MJPG")};
+  static constexpr std::array kFourccs = {fourcc_of("YUYV"), fourcc_of("UYVY"), fourcc_of("NV12"), fourcc_of("MJPG")};
   static bool is_known(std::uint32_t code);
   static bool is_raw(std::uint32_t code) { return is_known(code) && code != fourcc_of("MJPG"); }
 

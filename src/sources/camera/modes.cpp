@@ -113,7 +113,7 @@ Result<std::uint32_t> choose_format(const CameraInfo& camera, const CameraWish& 
   for (const CameraMode& mode : camera.modes)
     there += fmt::format("{}{}x{} {}", there.empty() ? "" : ", ", mode.size.width, mode.size.height, mode.format);
   return Error{ErrorCode::kUnsupported,
-               fmt::format("cannot use camera {} ({}): it has no {}x{} as YUYV, UYVY or MJPG; it has: {}", camera.path,
+               fmt::format("cannot use camera {} ({}): it has no {}x{} as YUYV, UYVY, NV12 or MJPG; it has: {}", camera.path,
                            camera.name, wish.size.width, wish.size.height, there.empty() ? "nothing" : there)};
 }
 

@@ -23,12 +23,18 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::string_view kName = "synthetic";
 constexpr int kPairs = 60;  // two seconds: as long as people wait for them, and long enough to move an arm
+constexpr int kMostPairs = 300;
 constexpr std::chrono::nanoseconds kPeriod{1'000'000'000 / 30};
 
 class LiveClip final : public PairSource {
  public:
   explicit LiveClip(SyntheticClip clip)
-      : clip_(std::move(clip)), size_(clip_.setup().size), rig_(clip_.rig()), pairs_(kPairs), renderer_([this] { render(); }) {}
+      : clip_(std::move(clip)),
+        size_(clip_.setup().size),
+        rig_(clip_.rig()),
+        all_(clip_.setup().frames),
+        pairs_(static_cast<std::size_t>(all_)),
+        renderer_([this] { render(); }) {}
   ~LiveClip() override {
     stop_ = true;
     renderer_.join();
@@ -40,8 +46,8 @@ class LiveClip final : public PairSource {
   std::optional<Rig> rig() const override { return rig_; }
   std::int64_t dropped() const override { return dropped_; }
   std::string warning() const override {
-    return rendered_ < kPairs ? fmt::format("rendering the synthetic person: {} of {} pairs", rendered_.load(), kPairs)
-                              : std::string();
+    return rendered_ < all_ ? fmt::format("rendering the synthetic person: {} of {} pairs", rendered_.load(), all_)
+                            : std::string();
   }
 
   Result<Next> next(Pair& into) override {
@@ -57,7 +63,7 @@ class LiveClip final : public PairSource {
 
  private:
   void render() {
-    for (int i = 0; i < kPairs && !stop_; ++i) {
+    for (int i = 0; i < all_ && !stop_; ++i) {
       pairs_[static_cast<std::size_t>(i)] = clip_.frame(i).pair;
       const std::lock_guard lock(mutex_);
       rendered_ = i + 1;
@@ -66,11 +72,11 @@ class LiveClip final : public PairSource {
   }
   bool wait_for_pairs() {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, std::chrono::milliseconds(500), [this] { return rendered_ == kPairs; });
+    return changed_.wait_for(lock, std::chrono::milliseconds(500), [this] { return rendered_ == all_; });
   }
   void show(std::int64_t number, Pair& into) const {
-    const auto turn = static_cast<int>(number % (2 * kPairs - 2));
-    const Pair& shown = pairs_[static_cast<std::size_t>(std::min(turn, 2 * kPairs - 2 - turn))];
+    const auto turn = static_cast<int>(number % (2 * all_ - 2));
+    const Pair& shown = pairs_[static_cast<std::size_t>(std::min(turn, 2 * all_ - 2 - turn))];
     const TimeNs t_ns = (*start_ + number * kPeriod).time_since_epoch() / std::chrono::nanoseconds(1);
     for (Picture Pair::*side : {&Pair::left, &Pair::right}) {
       Picture& picture = into.*side;
@@ -85,6 +91,7 @@ class LiveClip final : public PairSource {
   SyntheticClip clip_;
   const Size size_;
   const Rig rig_;
+  const int all_;  // pairs
   std::vector<Pair> pairs_;
   std::atomic<int> rendered_ = 0;
   std::atomic<bool> stop_ = false;
@@ -109,11 +116,16 @@ Result<std::unique_ptr<PairSource>> open_live_clip(std::string_view name) {
     const std::string rest(name.substr(kName.size() + 1));
     const std::size_t colon = std::min(rest.find(':'), rest.size());
     setup.script = rest.substr(0, colon);
-    char more = 0;
-    if (colon < rest.size() && std::sscanf(rest.c_str() + colon, ":%dx%d%c", &setup.size.width, &setup.size.height, &more) != 2)
+    const char* numbers = rest.c_str() + colon;
+    int end = 0;
+    std::sscanf(numbers, ":%dx%d%n:%d%n", &setup.size.width, &setup.size.height, &end, &setup.frames, &end);
+    if (numbers[end] != '\0')
+      return Error{ErrorCode::kBadInput, fmt::format("cannot open {}: '{}' is not WIDTHxHEIGHT or WIDTHxHEIGHT:PAIRS; "
+                                                     "synthetic:wave:320x240:60 is an example",
+                                                     name, rest.substr(colon + 1))};
+    if (setup.frames < 2 || setup.frames > kMostPairs)
       return Error{ErrorCode::kBadInput,
-                   fmt::format("cannot open {}: '{}' is not WIDTHxHEIGHT; synthetic:wave:320x240 is an example", name,
-                               rest.substr(colon + 1))};
+                   fmt::format("cannot open {}: {} pairs; choose 2 to {}", name, setup.frames, kMostPairs)};
   }
   const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   DUO_TRY_ASSIGN(SyntheticClip clip, SyntheticClip::open(setup, threads));
