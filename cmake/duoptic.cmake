@@ -54,10 +54,10 @@ function(duoptic_test name)
   endif()
 endfunction()
 
-# duoptic_vulkan_test(NAME [SOURCES...] [ASSISTED]): one program, run at each subgroup size that the software driver can take (8, 4,
-# 16), with ASSISTED once more with every access of the kernels checked; under sanitizers, which do not see inside kernels, at one.
+# duoptic_vulkan_test(NAME [SOURCES...] [EVERY_SIZE] [ASSISTED]): one program, run at subgroups of 8, with EVERY_SIZE also of 4 and 16, what
+# the software driver can take; with ASSISTED once more with every access of the kernels checked. Sanitizers do not see inside kernels: once.
 function(duoptic_vulkan_test name)
-  cmake_parse_arguments(ARG "ASSISTED" "" "" ${ARGN})
+  cmake_parse_arguments(ARG "EVERY_SIZE;ASSISTED" "" "" ${ARGN})
   if(NOT DUO_TESTS OR NOT DUO_VULKAN)
     return()
   endif()
@@ -68,7 +68,10 @@ function(duoptic_vulkan_test name)
   if(NOT DUO_SLOW_TESTS)
     return()
   endif()
-  set(variants 128:LP_NATIVE_VECTOR_WIDTH=128 512:LP_NATIVE_VECTOR_WIDTH=512)
+  set(variants)
+  if(ARG_EVERY_SIZE)
+    list(APPEND variants 128:LP_NATIVE_VECTOR_WIDTH=128 512:LP_NATIVE_VECTOR_WIDTH=512)
+  endif()
   if(ARG_ASSISTED)
     list(APPEND variants assisted:DUOPTIC_GPU_ASSISTED=1)
   endif()

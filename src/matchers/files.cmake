@@ -4,7 +4,7 @@ target_sources(duoptic PRIVATE ${dir}/pyramid.cpp ${dir}/pyramid_params.cpp ${di
 duoptic_test(matchers/pyramid ${dir}/pyramid_test.cpp)
 if(DUO_VULKAN)
   target_sources(duoptic PRIVATE ${dir}/pyramid_vk.cpp)
-  duoptic_vulkan_test(matchers/vk ${dir}/pyramid_vk_test.cpp)  # of every matcher
+  duoptic_vulkan_test(matchers/vk EVERY_SIZE ${dir}/pyramid_vk_test.cpp)  # of every matcher
 endif()
 set(dir ${PROJECT_SOURCE_DIR}/src/matchers/sgm)
 target_sources(duoptic PRIVATE ${dir}/sgm.cpp ${dir}/sgm_params.cpp ${dir}/sgm_ref.cpp ${dir}/sgm_simd.cpp)
