@@ -5,13 +5,13 @@
 namespace duo::vk {
 namespace {
 
-constexpr std::uint32_t kSumsCode[] = {
+constexpr std::uint32_t kBalanceSumsCode[] = {
 #include "spirv/balance_sums.comp.inc"
 };
-constexpr std::uint32_t kTableCode[] = {
+constexpr std::uint32_t kBalanceTableCode[] = {
 #include "spirv/balance_table.comp.inc"
 };
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kBalanceCode[] = {
 #include "spirv/balance.comp.inc"
 };
 
@@ -29,9 +29,9 @@ Result<Balance::Scratch> Balance::Scratch::make(const Device& device, Size size)
 
 Result<Balance> Balance::make(const Device& device) {
   Balance out;
-  DUO_TRY_ASSIGN(out.sums_, Kernel::make(device, {"balance sums", kSumsCode, 5, sizeof(BalanceSumsPush)}));
-  DUO_TRY_ASSIGN(out.table_, Kernel::make(device, {"balance table", kTableCode, 2, sizeof(BalanceTablePush)}));
-  DUO_TRY_ASSIGN(out.look_up_, Kernel::make(device, {"balance", kCode, 3, sizeof(BalancePush)}));
+  DUO_TRY_ASSIGN(out.sums_, Kernel::make(device, {"balance sums", kBalanceSumsCode, 5, sizeof(BalanceSumsPush)}));
+  DUO_TRY_ASSIGN(out.table_, Kernel::make(device, {"balance table", kBalanceTableCode, 2, sizeof(BalanceTablePush)}));
+  DUO_TRY_ASSIGN(out.look_up_, Kernel::make(device, {"balance", kBalanceCode, 3, sizeof(BalancePush)}));
   return out;
 }
 

@@ -5,14 +5,14 @@
 namespace duo::vk {
 namespace {
 
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kCheckLeftRightCode[] = {
 #include "spirv/check_left_right.comp.inc"
 };
 
 // -1 of winners and Disparity::kNone have the same bits, so one kernel serves both.
 template <class T>
-void record_with(const Kernel& kernel, Recorder& recorder, const CheckLeftRight::Input& in, BufferView<T> value,
-                 BufferView<T> dst, Size size) {
+void record_check(const Kernel& kernel, Recorder& recorder, const CheckLeftRight::Input& in, BufferView<T> value,
+                  BufferView<T> dst, Size size) {
   const bool masked = !in.left_inside.absent();
   DUO_CHECK(in.left.holds(size) && in.right.holds(size) && value.holds(size) && dst.holds(size));
   DUO_CHECK(masked ? in.left_inside.holds(size) && in.right_inside.holds(size) : in.right_inside.absent());
@@ -31,17 +31,17 @@ void record_with(const Kernel& kernel, Recorder& recorder, const CheckLeftRight:
 
 Result<CheckLeftRight> CheckLeftRight::make(const Device& device) {
   CheckLeftRight out;
-  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"check left right", kCode, 6, sizeof(CheckLeftRightPush)}));
+  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"check left right", kCheckLeftRightCode, 6, sizeof(CheckLeftRightPush)}));
   return out;
 }
 
 void CheckLeftRight::record_winners(Recorder& recorder, const Input& in, BufferView<std::int16_t> dst, Size size) const {
-  record_with(kernel_, recorder, in, in.left, dst, size);
+  record_check(kernel_, recorder, in, in.left, dst, size);
 }
 
 void CheckLeftRight::record(Recorder& recorder, const Input& in, BufferView<std::uint16_t> fine, BufferView<std::uint16_t> dst,
                             Size size) const {
-  record_with(kernel_, recorder, in, fine, dst, size);
+  record_check(kernel_, recorder, in, fine, dst, size);
 }
 
 }  // namespace duo::vk

@@ -8,7 +8,7 @@
 namespace duo::vk {
 namespace {
 
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kDepthCode[] = {
 #include "spirv/depth.comp.inc"
 };
 
@@ -17,7 +17,7 @@ constexpr std::uint32_t kCode[] = {
 Result<Depth> Depth::make(Device& device, float focal_baseline_px_mm) {
   constexpr Size kTable{1 << 16, 1};
   Depth out;
-  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"depth", kCode, 3, sizeof(DepthPush)}));
+  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"depth", kDepthCode, 3, sizeof(DepthPush)}));
   std::vector<std::uint16_t> every(kTable.width), answers(kTable.width);
   std::iota(every.begin(), every.end(), std::uint16_t{0});
   ref::depth(View<const std::uint16_t>(every.data(), kTable, kTable.width), focal_baseline_px_mm,

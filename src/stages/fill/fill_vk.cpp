@@ -5,7 +5,7 @@
 namespace duo::vk {
 namespace {
 
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kFillCode[] = {
 #include "spirv/fill.comp.inc"
 };
 
@@ -13,7 +13,7 @@ constexpr std::uint32_t kCode[] = {
 
 Result<Fill> Fill::make(const Device& device) {
   Fill out;
-  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"fill", kCode, 2, sizeof(FillPush)}));
+  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"fill", kFillCode, 2, sizeof(FillPush)}));
   return out;
 }
 

@@ -5,7 +5,7 @@
 namespace duo::vk {
 namespace {
 
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kGaussianCode[] = {
 #include "spirv/gaussian.comp.inc"
 };
 
@@ -13,7 +13,7 @@ constexpr std::uint32_t kCode[] = {
 
 Result<Gaussian> Gaussian::make(const Device& device) {
   Gaussian out;
-  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"gaussian", kCode, 2, sizeof(GaussianPush)}));
+  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"gaussian", kGaussianCode, 2, sizeof(GaussianPush)}));
   return out;
 }
 

@@ -5,7 +5,7 @@
 namespace duo::vk {
 namespace {
 
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kGrayCode[] = {
 #include "spirv/gray.comp.inc"
 };
 
@@ -13,7 +13,7 @@ constexpr std::uint32_t kCode[] = {
 
 Result<Gray> Gray::make(const Device& device) {
   Gray out;
-  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"gray", kCode, 2, sizeof(GrayPush)}));
+  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"gray", kGrayCode, 2, sizeof(GrayPush)}));
   return out;
 }
 

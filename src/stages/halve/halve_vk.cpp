@@ -5,7 +5,7 @@
 namespace duo::vk {
 namespace {
 
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kHalveCode[] = {
 #include "spirv/halve.comp.inc"
 };
 
@@ -13,7 +13,7 @@ constexpr std::uint32_t kCode[] = {
 
 Result<Halve> Halve::make(const Device& device) {
   Halve out;
-  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"halve", kCode, 2, sizeof(HalvePush)}));
+  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"halve", kHalveCode, 2, sizeof(HalvePush)}));
   return out;
 }
 

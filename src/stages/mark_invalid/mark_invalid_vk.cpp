@@ -5,7 +5,7 @@
 namespace duo::vk {
 namespace {
 
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kMarkInvalidCode[] = {
 #include "spirv/mark_invalid.comp.inc"
 };
 
@@ -13,7 +13,7 @@ constexpr std::uint32_t kCode[] = {
 
 Result<MarkInvalid> MarkInvalid::make(const Device& device) {
   MarkInvalid out;
-  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"mark invalid", kCode, 4, sizeof(MarkInvalidPush)}));
+  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"mark invalid", kMarkInvalidCode, 4, sizeof(MarkInvalidPush)}));
   return out;
 }
 

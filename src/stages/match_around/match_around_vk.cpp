@@ -7,7 +7,7 @@
 namespace duo::vk {
 namespace {
 
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kMatchAroundCode[] = {
 #include "spirv/match_around.comp.inc"
 };
 
@@ -34,7 +34,7 @@ Groups groups_of(Size size, int candidates) {
 
 Result<MatchAround> MatchAround::make(const Device& device) {
   MatchAround out;
-  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"match around", kCode, 6, sizeof(MatchAroundPush)}));
+  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"match around", kMatchAroundCode, 6, sizeof(MatchAroundPush)}));
   return out;
 }
 

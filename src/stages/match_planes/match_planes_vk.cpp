@@ -5,7 +5,7 @@
 namespace duo::vk {
 namespace {
 
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kMatchPlanesCode[] = {
 #include "spirv/match_planes.comp.inc"
 };
 
@@ -15,7 +15,7 @@ Size MatchPlanes::packed_size(Size size) { return {size.width, kMatchPlanes * si
 
 Result<MatchPlanes> MatchPlanes::make(const Device& device) {
   MatchPlanes out;
-  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"match planes", kCode, 3, sizeof(MatchPlanesPush)}));
+  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"match planes", kMatchPlanesCode, 3, sizeof(MatchPlanesPush)}));
   return out;
 }
 

@@ -8,7 +8,7 @@ namespace {
 constexpr std::uint32_t kChannelsCode[] = {
 #include "spirv/match_tiles_channels.comp.inc"
 };
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kMatchTilesCode[] = {
 #include "spirv/match_tiles.comp.inc"
 };
 constexpr std::uint32_t kRightCode[] = {
@@ -32,7 +32,7 @@ Result<MatchTiles::Scratch> MatchTiles::Scratch::make(const Device& device, Size
 Result<MatchTiles> MatchTiles::make(const Device& device) {
   MatchTiles out;
   DUO_TRY_ASSIGN(out.channels_, Kernel::make(device, {"match tiles channels", kChannelsCode, 3, sizeof(MatchChannelsPush)}));
-  DUO_TRY_ASSIGN(out.match_, Kernel::make(device, {"match tiles", kCode, 6, sizeof(MatchTilesPush)}));
+  DUO_TRY_ASSIGN(out.match_, Kernel::make(device, {"match tiles", kMatchTilesCode, 6, sizeof(MatchTilesPush)}));
   DUO_TRY_ASSIGN(out.right_, Kernel::make(device, {"match tiles right", kRightCode, 2, sizeof(MatchRightPush)}));
   return out;
 }

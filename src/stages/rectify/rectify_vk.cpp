@@ -5,18 +5,18 @@
 namespace duo::vk {
 namespace {
 
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kRectifyCode[] = {
 #include "spirv/rectify.comp.inc"
 };
 
-Result<Kernel> make_kernel(const Device& device, const char* name, std::uint32_t channels) {
+Result<Kernel> make_rectify(const Device& device, const char* name, std::uint32_t channels) {
   const std::uint32_t constants[] = {channels};
-  return Kernel::make(device, {name, kCode, 5, sizeof(RectifyPush), constants});
+  return Kernel::make(device, {name, kRectifyCode, 5, sizeof(RectifyPush), constants});
 }
 
 template <class T>
-void record_with(const Kernel& kernel, Recorder& recorder, BufferView<T> src, const Rectify::Map& map, BufferView<T> dst,
-                 BufferView<std::uint8_t> inside, Size size) {
+void record_rectify(const Kernel& kernel, Recorder& recorder, BufferView<T> src, const Rectify::Map& map, BufferView<T> dst,
+                    BufferView<std::uint8_t> inside, Size size) {
   const bool marks_inside = !inside.absent();
   DUO_CHECK(!src.absent() && map.corner.holds(size) && map.fraction_q8.holds(size) && dst.holds(size));
   DUO_CHECK(!marks_inside || inside.holds(size));
@@ -32,18 +32,18 @@ void record_with(const Kernel& kernel, Recorder& recorder, BufferView<T> src, co
 
 Result<Rectify> Rectify::make(const Device& device) {
   Rectify out;
-  DUO_TRY_ASSIGN(out.gray_, make_kernel(device, "rectify gray", 1));
-  DUO_TRY_ASSIGN(out.color_, make_kernel(device, "rectify color", 3));
+  DUO_TRY_ASSIGN(out.gray_, make_rectify(device, "rectify gray", 1));
+  DUO_TRY_ASSIGN(out.color_, make_rectify(device, "rectify color", 3));
   return out;
 }
 
 void Rectify::record(Recorder& recorder, BufferView<std::uint8_t> src, const Map& map, BufferView<std::uint8_t> dst,
                      BufferView<std::uint8_t> inside, Size size) const {
-  record_with(gray_, recorder, src, map, dst, inside, size);
+  record_rectify(gray_, recorder, src, map, dst, inside, size);
 }
 
 void Rectify::record(Recorder& recorder, BufferView<Rgb8> src, const Map& map, BufferView<Rgb8> dst, Size size) const {
-  record_with(color_, recorder, src, map, dst, {}, size);
+  record_rectify(color_, recorder, src, map, dst, {}, size);
 }
 
 }  // namespace duo::vk

@@ -15,7 +15,7 @@ constexpr std::uint32_t kCostsCode[] = {
 constexpr std::uint32_t kPathCode[] = {
 #include "spirv/semi_global_path.comp.inc"
 };
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kSemiGlobalCode[] = {
 #include "spirv/semi_global.comp.inc"
 };
 constexpr std::uint32_t kFineCode[] = {
@@ -69,7 +69,7 @@ Result<SemiGlobal> SemiGlobal::make(const Device& device, int max_disparity, con
   DUO_TRY_ASSIGN(out.path_,
                  Kernel::make(device, {"semi-global path", kPathCode, 3, sizeof(SemiGlobalPathPush), path_constants, lanes}));
   DUO_TRY_ASSIGN(out.winners_,
-                 Kernel::make(device, {"semi-global winners", kCode, 8, sizeof(SemiGlobalPush), constants, lanes}));
+                 Kernel::make(device, {"semi-global winners", kSemiGlobalCode, 8, sizeof(SemiGlobalPush), constants, lanes}));
   DUO_TRY_ASSIGN(out.fine_, Kernel::make(device, {"semi-global fine", kFineCode, 4, sizeof(SemiGlobalFinePush)}));
   return out;
 }

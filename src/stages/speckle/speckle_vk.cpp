@@ -14,7 +14,7 @@ constexpr std::uint32_t kJoinCode[] = {
 constexpr std::uint32_t kCountCode[] = {
 #include "spirv/speckle_count.comp.inc"
 };
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kSpeckleCode[] = {
 #include "spirv/speckle.comp.inc"
 };
 
@@ -35,7 +35,7 @@ Result<RemoveSpeckle> RemoveSpeckle::make(const Device& device) {
   DUO_TRY_ASSIGN(out.runs_, Kernel::make(device, {"speckle runs", kRunsCode, 3, sizeof(SpecklePush)}));
   DUO_TRY_ASSIGN(out.join_, Kernel::make(device, {"speckle join", kJoinCode, 3, sizeof(SpecklePush)}));
   DUO_TRY_ASSIGN(out.count_, Kernel::make(device, {"speckle count", kCountCode, 3, sizeof(SpecklePush)}));
-  DUO_TRY_ASSIGN(out.remove_, Kernel::make(device, {"speckle", kCode, 3, sizeof(SpecklePush)}));
+  DUO_TRY_ASSIGN(out.remove_, Kernel::make(device, {"speckle", kSpeckleCode, 3, sizeof(SpecklePush)}));
   return out;
 }
 

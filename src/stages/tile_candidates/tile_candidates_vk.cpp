@@ -5,7 +5,7 @@
 namespace duo::vk {
 namespace {
 
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kTileCandidatesCode[] = {
 #include "spirv/tile_candidates.comp.inc"
 };
 
@@ -13,7 +13,7 @@ constexpr std::uint32_t kCode[] = {
 
 Result<TileCandidates> TileCandidates::make(const Device& device) {
   TileCandidates out;
-  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"tile candidates", kCode, 3, sizeof(TileCandidatesPush)}));
+  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"tile candidates", kTileCandidatesCode, 3, sizeof(TileCandidatesPush)}));
   return out;
 }
 

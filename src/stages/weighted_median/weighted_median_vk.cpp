@@ -5,7 +5,7 @@
 namespace duo::vk {
 namespace {
 
-constexpr std::uint32_t kCode[] = {
+constexpr std::uint32_t kWeightedMedianCode[] = {
 #include "spirv/weighted_median.comp.inc"
 };
 
@@ -13,7 +13,7 @@ constexpr std::uint32_t kCode[] = {
 
 Result<WeightedMedian> WeightedMedian::make(const Device& device) {
   WeightedMedian out;
-  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"weighted median", kCode, 4, sizeof(WeightedMedianPush)}));
+  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"weighted median", kWeightedMedianCode, 4, sizeof(WeightedMedianPush)}));
   return out;
 }
 
