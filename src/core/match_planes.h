@@ -23,26 +23,33 @@ struct MatchPlanes {
   Size size() const { return value[0].size(); }
 };
 
-/// The memory of one view's planes.
-struct PlaneImages {
+/// The memory of one view's planes: a row of all of them lies together, an odd number of cache lines apart, as who compares pixels
+/// walks along all twelve at once. Twelve pictures a whole number of pages apart would share one set of the cache.
+class PlaneImages {
+ public:
   static constexpr int kPadRight = 64;
   Size size;
   int pad = 0;  // columns before x = 0
-  std::array<Image<std::uint8_t>, 2> census;
-  std::array<Image<std::uint8_t>, MatchPlanes::kChannels> value, low, high;
-  Image<std::uint8_t> outside;
+  std::array<View<std::uint8_t>, 2> census;
+  std::array<View<std::uint8_t>, MatchPlanes::kChannels> value, low, high;
+  View<std::uint8_t> outside;
 
   PlaneImages() = default;
   PlaneImages(Size size_, int pad_) : size(size_), pad(pad_) {
+    constexpr int kLine = 64, kPlanes = 2 + 3 * MatchPlanes::kChannels + 1;
     const Size padded{pad + size.width + kPadRight, size.height};
-    for (auto& plane : census) plane = Image<std::uint8_t>(padded);
+    const int apart = (((padded.width + kLine - 1) / kLine) | 1) * kLine;
+    memory_ = Image<std::uint8_t>({kPlanes * apart, padded.height});
+    int n = 0;
+    const auto next = [&] { return View<std::uint8_t>(memory_.row(0) + apart * n++, padded, memory_.stride()); };
+    for (auto& plane : census) plane = next();
     for (auto* planes : {&value, &low, &high})
-      for (auto& plane : *planes) plane = Image<std::uint8_t>(padded);
-    outside = Image<std::uint8_t>(padded);
+      for (auto& plane : *planes) plane = next();
+    outside = next();
   }
 
   MatchPlanes planes() const {
-    const auto inner = [this](const Image<std::uint8_t>& plane) { return plane.view().crop(0, pad, size); };
+    const auto inner = [this](View<const std::uint8_t> plane) { return plane.crop(0, pad, size); };
     MatchPlanes out;
     for (std::size_t i = 0; i < census.size(); ++i) out.census[i] = inner(census[i]);
     for (std::size_t i = 0; i < value.size(); ++i)
@@ -52,11 +59,14 @@ struct PlaneImages {
   }
 
   /// Continues row y of a plane by its edge values.
-  void continue_row(Image<std::uint8_t>& plane, int y) const {
+  void continue_row(View<std::uint8_t> plane, int y) const {
     std::uint8_t* row = plane.row(y);
     std::memset(row, row[pad], static_cast<std::size_t>(pad));
     std::memset(row + pad + size.width, row[pad + size.width - 1], kPadRight);
   }
+
+ private:
+  Image<std::uint8_t> memory_;
 };
 
 }  // namespace duo

@@ -64,7 +64,7 @@ void match_planes(View<const std::uint8_t> gray, View<const std::uint8_t> inside
   for (std::size_t c = 0; c < MatchPlanes::kChannels; ++c)
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x)
-        interval(out.value[c].view().crop(0, pad, out.size), y, x, out.low[c].at(y, pad + x), out.high[c].at(y, pad + x));
+        interval(out.value[c].crop(0, pad, out.size), y, x, out.low[c].at(y, pad + x), out.high[c].at(y, pad + x));
   for (int y = 0; y < h; ++y) {
     for (auto& plane : out.census) out.continue_row(plane, y);
     for (auto* planes : {&out.value, &out.low, &out.high})

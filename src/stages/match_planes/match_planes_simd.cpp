@@ -97,7 +97,7 @@ void outside_row(View<const std::uint8_t> inside, int y, std::uint8_t* out) {
 void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
   DUO_CHECK(gray.size() == out.size && (inside.empty() || inside.size() == out.size) && out.pad >= PlaneImages::kPadRight);
   const int w = gray.width(), h = gray.height(), pad = out.pad;
-  const auto row = [&](Image<std::uint8_t>& plane, int y) { return plane.row(std::clamp(y, 0, h - 1)) + pad; };
+  const auto row = [&](View<std::uint8_t> plane, int y) { return plane.row(std::clamp(y, 0, h - 1)) + pad; };
   pool.rows(h, [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
       std::copy_n(gray.row(y), w, row(out.value[0], y));
@@ -115,8 +115,7 @@ void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uin
       for (int i = 0; i < 5; ++i) rows[i] = row(out.value[0], y + i - 2);
       HWY_DYNAMIC_DISPATCH(census_row)(rows, w, row(out.census[0], y), row(out.census[1], y));
       HWY_DYNAMIC_DISPATCH(sobel_row)(rows[1], rows[2], rows[3], w, row(out.value[1], y), row(out.value[2], y));
-      for (Image<std::uint8_t>* plane : {&out.census[0], &out.census[1], &out.value[1], &out.value[2]})
-        out.continue_row(*plane, y);
+      for (const View<std::uint8_t> plane : {out.census[0], out.census[1], out.value[1], out.value[2]}) out.continue_row(plane, y);
     }
   });
   pool.rows(h, [&](int begin, int end) {

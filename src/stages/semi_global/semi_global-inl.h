@@ -42,12 +42,12 @@ HWY_INLINE int least(DV d, hn::Vec<DV> a, hn::Vec<DV> b) {
 HWY_INLINE int first_of(int pair) { return pair & 255; }
 HWY_INLINE int second_of(int pair) { return pair >> 8; }
 
-/// What the pixel before on a path left behind.
+/// What the pixel before on a path left behind. Least and P2 are bytes in memory: from there they are broadcast in one step.
 struct Before {
   const std::uint8_t* costs;  // lane 0 of its path costs
   V least, jump, p1;
-  Before(const std::uint8_t* costs_, int least_, int p2, int p1_)
-      : costs(costs_), least(set(least_)), jump(set(least_ + p2)), p1(set(p1_)) {}
+  Before(const std::uint8_t* costs_, const std::uint8_t* least_, const std::uint8_t* p2, int p1_)
+      : costs(costs_), least(hn::Set(D(), *least_)), jump(hn::Add(least, hn::Set(D(), *p2))), p1(set(p1_)) {}
 
   HWY_INLINE V step(int j, V cost) const {
     const D d;

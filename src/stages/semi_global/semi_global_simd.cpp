@@ -32,7 +32,7 @@ struct Sweep {
   int thread, threads;
   bool up;
   int w, h, lanes, first;  // first: lane of the first vector that holds a disparity
-  int p2[256];
+  std::uint8_t p2[256];
   HWY_ALIGN_MAX std::uint8_t unused[kGap];  // 255 in the lanes of that vector which hold none
 
   Sweep(const SemiGlobal& in_, Scratch& scratch, const SemiGlobalMatch& out_, int thread_, int threads_, bool up_)
@@ -47,7 +47,7 @@ struct Sweep {
         lanes(s.lanes) {
     const int n = static_cast<int>(hn::Lanes(D()));
     first = (lanes - in.max_disparity) / n * n;
-    for (int i = 0; i < 256; ++i) p2[i] = in.params.p2_at(i);
+    for (int i = 0; i < 256; ++i) p2[i] = static_cast<std::uint8_t>(in.params.p2_at(i));
     for (int j = 0; j < kGap; ++j) unused[j] = first + j < lanes - in.max_disparity ? 255 : 0;
   }
 
@@ -68,9 +68,10 @@ struct Sweep {
 
 /// The pixel before on a path, `from` in a row whose gray values are given; none where the path begins.
 HWY_INLINE Before before(const Sweep& sweep, const std::uint8_t* gray, int x, const std::uint8_t* gray_from, int from,
-                         const std::uint8_t* costs, int least) {
-  if (gray_from == nullptr || from < 0 || from >= sweep.w) return Before(sweep.s.none.row(0) + kGap, 0, 0, 0);
-  return Before(costs, least, sweep.p2[std::abs(gray[x] - gray_from[from])], sweep.in.params.p1);
+                         const std::uint8_t* costs, const std::uint8_t* least) {
+  const std::uint8_t* none = sweep.s.none.row(0) + kGap;
+  if (gray_from == nullptr || from < 0 || from >= sweep.w) return Before(none, none, none, 0);
+  return Before(costs, least, &sweep.p2[std::abs(gray[x] - gray_from[from])], sweep.in.params.p1);
 }
 
 /// A row on its way from left to right.
@@ -98,18 +99,30 @@ class Along {
     if (kUp || sweep.in.params.upward) upward_ = s.upward.row(y);
   }
 
+  /// Costs of a block of pixels. By themselves, as nothing here waits for the pixel before: mixed with the paths they take twice
+  /// the time.
+  HWY_NOINLINE void costs(int begin, int end) {
+    const D d;
+    const int n = static_cast<int>(hn::Lanes(d)), first = sweep_.first, lanes = sweep_.lanes;
+    const auto unused = hn::Load(d, sweep_.unused);
+    for (int x = begin; x < end; ++x) {
+      const PixelCost cost_of(left_, right_, sweep_.in.params, x);
+      std::uint8_t* const costs = row_.costs.row(0) + static_cast<std::ptrdiff_t>(x) * lanes;
+      hn::Store(hn::Or(cost_of.at(first), unused), d, costs + first);
+      for (int j = first + n; j < lanes; j += n) hn::Store(cost_of.at(j), d, costs + j);
+    }
+  }
+
   HWY_INLINE void pixel(int x) {
     const D d;
     const int n = static_cast<int>(hn::Lanes(d)), first = sweep_.first, lanes = sweep_.lanes;
     const std::ptrdiff_t stride = sweep_.s.stride, cell = static_cast<std::ptrdiff_t>(x) * lanes;
-    const PixelCost cost_of(left_, right_, sweep_.in.params, x);
     const std::uint8_t* gray = left_.value[0];
-    const Before from_left = before(sweep_, gray, x, gray, x - 1, before_, least_);
+    const Before from_left = before(sweep_, gray, x, gray, x - 1, before_, &least_);
     constexpr int kFrom[3] = {0, kDiagonals ? -1 : 0, kDiagonals ? 1 : 0};
     const auto above = [&](int k) HWY_ATTR {
       const int from = x + kFrom[k];
-      return before(sweep_, gray, x, gray_above_, from, paths_above_[k] + from * stride,
-                    from < 0 || from >= sweep_.w ? 0 : minima_above_[k][from]);
+      return before(sweep_, gray, x, gray_above_, from, paths_above_[k] + from * stride, minima_above_[k] + from);
     };
     const Before from_above[3] = {above(0), above(kDiagonals ? 1 : 0), above(kDiagonals ? 2 : 0)};
     std::uint8_t *const here = here_, *const sums = (kUp ? upward_ : row_.sums.row(0)) + cell,
@@ -119,11 +132,9 @@ class Along {
     auto least_left = set(255);
     V least_above[3] = {least_left, least_left, least_left};
     for (int j = first; j < lanes; j += n) {
-      auto cost = cost_of.at(j);
-      if (j == first) cost = hn::Or(cost, hn::Load(d, sweep_.unused));
+      const auto cost = hn::Load(d, costs + j);
       auto sum = hn::Zero(d);
       if (!kUp) {
-        hn::Store(cost, d, costs + j);
         sum = from_left.step(j, cost);
         hn::Store(sum, d, here + j);
         least_left = hn::Min(least_left, sum);
@@ -138,7 +149,7 @@ class Along {
       hn::Store(sum, d, sums + j);
     }
     const int pair = least(d, least_left, least_above[0]);
-    least_ = first_of(pair);
+    least_ = static_cast<std::uint8_t>(first_of(pair));
     minima_[0][x] = static_cast<std::uint8_t>(second_of(pair));
     if (kDiagonals) {
       const int others = least(d, least_above[1], least_above[2]);
@@ -155,7 +166,7 @@ class Along {
   std::uint8_t *paths_[3] = {}, *minima_[3] = {};
   const std::uint8_t *paths_above_[3] = {}, *minima_above_[3] = {}, *gray_above_ = nullptr;
   std::uint8_t *before_, *here_, *upward_ = nullptr;
-  int least_ = 0;
+  std::uint8_t least_ = 0;
 };
 
 /// The same row on its way back: adds the last path and picks the winners.
@@ -174,7 +185,7 @@ class Back {
   HWY_INLINE void pixel(int x) {
     const D d;
     const int n = static_cast<int>(hn::Lanes(d)), first = sweep_.first, lanes = sweep_.lanes;
-    const Before from_right = before(sweep_, gray_, x, gray_, x + 1, before_, least_);
+    const Before from_right = before(sweep_, gray_, x, gray_, x + 1, before_, &least_);
     const std::ptrdiff_t cell = static_cast<std::ptrdiff_t>(x) * lanes;
     const std::uint8_t *const sums = row_.sums.row(0) + cell, *const costs = row_.costs.row(0) + cell;
     // Of the right pixel x - d: lane 0 is x + 1 - lanes, and both rows begin `lanes` before x = 0.
@@ -196,7 +207,7 @@ class Back {
       hn::StoreU(hn::IfThenElse(better, disparity, hn::LoadU(d, winner + j)), d, winner + j);
     }
     const int pair = least(d, least_right, least_total);
-    least_ = first_of(pair);
+    least_ = static_cast<std::uint8_t>(first_of(pair));
     pick(x, totals, second_of(pair));
     std::swap(before_, here_);
   }
@@ -225,23 +236,38 @@ class Back {
     if (!sweep_.out.margin.empty()) sweep_.out.margin.row(y_)[x] = static_cast<std::uint8_t>(margin(totals, lane, least_total));
   }
 
-  /// The sub-pixel offsets of a row, without branches, so that the compiler makes vectors of it. Every number is whole and
-  /// below 2^24, and a quotient that is not whole stays more than half a float's step below the next whole number: no rounding
-  /// shows.
+  /// The sub-pixel offsets of a row.
   void interpolate() {
-    const std::int16_t* left = sweep_.out.left.row(y_);
-    const std::uint8_t *lower = row_.beside.row(0), *upper = row_.beside.row(1);
-    std::uint16_t* fine = sweep_.out.fine.row(y_);
-    const int most = sweep_.in.max_disparity - 2;
-    for (int x = 0; x < sweep_.w; ++x) {
-      const int disparity = left[x], below = lower[x], beyond = upper[x];
-      const int higher = std::max(below, beyond), height = higher * (below + beyond);
-      const int slope = 128 * std::abs(below - beyond) * (higher + below + beyond) + height / 2;
-      const int t = static_cast<int>(static_cast<float>(slope) / static_cast<float>(std::max(height, 1)));
-      const int size = (t * (768 - t) + 8192) >> 14;
-      const int offset = below < beyond ? -size : size;
-      fine[x] = static_cast<std::uint16_t>(16 * disparity + (disparity > 0 && disparity <= most ? offset : 0));
-    }
+    const hn::ScalableTag<std::int32_t> many;
+    const hn::CappedTag<std::int32_t, 1> one;
+    const int n = static_cast<int>(hn::Lanes(many));
+    int x = 0;
+    for (; x + n <= sweep_.w; x += n) interpolate(many, x);
+    for (; x < sweep_.w; ++x) interpolate(one, x);
+  }
+
+  /// Every number is whole and below 2^24, and a quotient that is not whole stays more than half a float's step below the next
+  /// whole number: no rounding shows.
+  template <class D32>
+  HWY_INLINE void interpolate(D32 d, int x) {
+    const hn::Rebind<std::int16_t, D32> d16;
+    const hn::Rebind<std::uint16_t, D32> du16;
+    const hn::Rebind<std::uint8_t, D32> d8;
+    const hn::Rebind<float, D32> df;
+    const auto constant = [&](int v) HWY_ATTR { return hn::Set(d, v); };
+    const auto disparity = hn::PromoteTo(d, hn::LoadU(d16, sweep_.out.left.row(y_) + x));
+    const auto below = hn::PromoteTo(d, hn::LoadU(d8, row_.beside.row(0) + x)),
+               beyond = hn::PromoteTo(d, hn::LoadU(d8, row_.beside.row(1) + x));
+    const auto higher = hn::Max(below, beyond), both = hn::Add(below, beyond), height = hn::Mul(higher, both);
+    const auto slope = hn::Add(
+        hn::ShiftLeft<7>(hn::Mul(hn::Sub(higher, hn::Min(below, beyond)), hn::Add(higher, both))), hn::ShiftRight<1>(height));
+    const auto t =
+        hn::ConvertTo(d, hn::Div(hn::ConvertTo(df, slope), hn::ConvertTo(df, hn::Max(height, constant(1)))));
+    const auto size = hn::ShiftRight<14>(hn::Add(hn::Mul(t, hn::Sub(constant(768), t)), constant(8192)));
+    const auto offset = hn::IfThenElse(hn::Lt(below, beyond), hn::Neg(size), size);
+    const auto inner = hn::And(hn::Gt(disparity, constant(0)), hn::Lt(disparity, constant(sweep_.in.max_disparity - 1)));
+    const auto fine = hn::Add(hn::ShiftLeft<4>(disparity), hn::IfThenElseZero(inner, offset));
+    hn::StoreU(hn::DemoteTo(du16, fine), du16, sweep_.out.fine.row(y_) + x);
   }
 
   int margin(std::uint8_t* totals, int lane, int least_total) const {
@@ -259,7 +285,7 @@ class Back {
   int y_;
   const std::uint8_t* gray_;
   std::uint8_t *before_, *here_;
-  int least_ = 0;
+  std::uint8_t least_ = 0;
 };
 
 /// A thread walks along one row and back along its last one at the same time: each pixel of a path waits for the pixel before,
@@ -274,6 +300,7 @@ void run(const Sweep& sweep) {
     for (int begin = 0; begin < sweep.w; begin += kBlock) {
       const int end = std::min(begin + kBlock, sweep.w);
       if (i > 0) sweep.wait_for(i - 1, std::min(end + 1, sweep.w));
+      along.costs(begin, end);
       for (int x = begin; x < end; ++x) {
         along.pixel(x);
         if (!kUp && last >= 0) back.pixel(sweep.w - 1 - x);
