@@ -34,9 +34,11 @@ TEST(SemiGlobal, HandWorked) {
   Views views(left, right, {}, 2);
   for (PlaneImages* view : {&views.left, &views.right})
     for (std::size_t c = 0; c < 3; ++c) {  // no gradients, no intervals
-      if (c > 0) view->value[c] = Image<std::uint8_t>(view->value[c].size());
-      view->low[c] = view->value[c].clone();
-      view->high[c] = view->value[c].clone();
+      const View<std::uint8_t> value = view->value[c];
+      for (int x = 0; x < value.width(); ++x) {
+        if (c > 0) value.at(0, x) = 0;
+        view->low[c].at(0, x) = view->high[c].at(0, x) = value.at(0, x);
+      }
     }
   SemiGlobalParams params;
   params.census_truncation = 0;
