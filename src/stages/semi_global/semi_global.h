@@ -87,9 +87,10 @@ class SemiGlobalScratch {
   };
   int lanes = 0;                             // disparities with those that only fill the last vector
   int stride = 0;                            // lanes + kGap
-  std::vector<Image<std::uint8_t>> paths;    // [row of the ring]: a row for each direction, [pixel][disparity]
-  std::vector<Image<std::uint8_t>> minima;   // [row of the ring]: a row for each direction, [pixel]
-  Image<std::uint8_t> none;                  // path costs where there is no pixel before: zeros
+  // [row of the ring]: a row for each direction, [pixel][disparity] and [pixel], with a pixel of zeros on both sides.
+  std::vector<Image<std::uint8_t>> paths, minima;
+  std::uint8_t* first_cell(std::uint8_t* row) const { return row + kGap + stride; }  // of x = 0
+  Image<std::uint8_t> none;                  // path costs and minima where there is no row before: zeros
   std::vector<Row> rows;                     // two a thread
   Image<std::uint8_t> upward;                // S of the paths from below
   std::unique_ptr<std::atomic<int>[]> done;  // [row]: pixels finished

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 
 #include "stages/semi_global/semi_global.h"
@@ -7,16 +8,19 @@ namespace duo::simd {
 SemiGlobalScratch::SemiGlobalScratch(Size size, int max_disparity, const SemiGlobalParams& params, int threads)
     : lanes(padding(max_disparity)),
       stride(lanes + kGap),
-      none({lanes + 2 * kGap, 1}),
+      none({std::max(lanes + 2 * kGap, size.width + 2), 1}),
       rows(2 * static_cast<std::size_t>(threads)) {
   const int directions = params.diagonals ? 3 : 1;
   const auto fill = [](Image<std::uint8_t>& image) {
     for (int y = 0; y < image.height(); ++y) std::memset(image.row(y), 255, static_cast<std::size_t>(image.width()));
   };
   for (int i = 0; i <= threads; ++i) {
-    paths.emplace_back(Size{size.width * stride + 2 * kGap, directions});
+    paths.emplace_back(Size{(size.width + 2) * stride + kGap, directions});
     fill(paths.back());
-    minima.emplace_back(Size{size.width, directions});
+    for (int k = 0; k < directions; ++k)
+      for (const int x : {-1, size.width})
+        std::memset(first_cell(paths.back().row(k)) + static_cast<std::ptrdiff_t>(x) * stride, 0, static_cast<std::size_t>(lanes));
+    minima.emplace_back(Size{size.width + 2, directions});
   }
   for (Row& row : rows) {
     row.sums = Image<std::uint8_t>({size.width * lanes, 1});

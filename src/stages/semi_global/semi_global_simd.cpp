@@ -66,12 +66,9 @@ struct Sweep {
   }
 };
 
-/// The pixel before on a path, `from` in a row whose gray values are given; none where the path begins.
-HWY_INLINE Before before(const Sweep& sweep, const std::uint8_t* gray, int x, const std::uint8_t* gray_from, int from,
-                         const std::uint8_t* costs, const std::uint8_t* least) {
-  const std::uint8_t* none = sweep.s.none.row(0) + kGap;
-  if (gray_from == nullptr || from < 0 || from >= sweep.w) return Before(none, none, none, 0);
-  return Before(costs, least, &sweep.p2[std::abs(gray[x] - gray_from[from])], sweep.in.params.p1);
+/// The pixel before on a path, whose path costs begin at `costs`. Where a path begins that is a cell of zeros.
+HWY_INLINE Before before(const Sweep& sweep, const std::uint8_t* costs, const std::uint8_t* least, int gray, int gray_before) {
+  return Before(costs, least, &sweep.p2[std::abs(gray - gray_before)], sweep.in.params.p1);
 }
 
 /// A row on its way from left to right.
@@ -87,14 +84,17 @@ class Along {
         right_(sweep.in.right, sweep.y_of(i), 1 - sweep.lanes) {
     const int ring = sweep.threads + 1, y = sweep.y_of(i);
     Scratch& s = sweep.s;
+    const auto here = static_cast<std::size_t>(i % ring), above = static_cast<std::size_t>((i + ring - 1) % ring);
     for (int k = 0; k < kPaths; ++k) {
-      paths_[k] = s.paths[static_cast<std::size_t>(i % ring)].row(k) + kGap;
-      minima_[k] = s.minima[static_cast<std::size_t>(i % ring)].row(k);
-      paths_above_[k] = s.paths[static_cast<std::size_t>((i + ring - 1) % ring)].row(k) + kGap;
-      minima_above_[k] = s.minima[static_cast<std::size_t>((i + ring - 1) % ring)].row(k);
+      paths_[k] = s.first_cell(s.paths[here].row(k));
+      minima_[k] = s.minima[here].row(k) + 1;
+      paths_above_[k] = i > 0 ? s.first_cell(s.paths[above].row(k)) : s.none.row(0) + kGap;
+      minima_above_[k] = (i > 0 ? s.minima[above].row(k) : s.none.row(0)) + 1;
     }
-    gray_above_ = i == 0 ? nullptr : sweep.in.left.value[0].row(sweep.y_of(i - 1));
+    stride_above_ = i > 0 ? s.stride : 0;
+    gray_above_ = sweep.in.left.value[0].row(sweep.y_of(std::max(i - 1, 0)));
     before_ = row.along.row(0) + kGap;
+    std::memset(before_, 0, static_cast<std::size_t>(sweep.lanes));
     here_ = row.along.row(1) + kGap;
     if (kUp || sweep.in.params.upward) upward_ = s.upward.row(y);
   }
@@ -118,11 +118,11 @@ class Along {
     const int n = static_cast<int>(hn::Lanes(d)), first = sweep_.first, lanes = sweep_.lanes;
     const std::ptrdiff_t stride = sweep_.s.stride, cell = static_cast<std::ptrdiff_t>(x) * lanes;
     const std::uint8_t* gray = left_.value[0];
-    const Before from_left = before(sweep_, gray, x, gray, x - 1, before_, &least_);
+    const Before from_left = before(sweep_, before_, &least_, gray[x], gray[x - 1]);
     constexpr int kFrom[3] = {0, kDiagonals ? -1 : 0, kDiagonals ? 1 : 0};
     const auto above = [&](int k) HWY_ATTR {
       const int from = x + kFrom[k];
-      return before(sweep_, gray, x, gray_above_, from, paths_above_[k] + from * stride, minima_above_[k] + from);
+      return before(sweep_, paths_above_[k] + from * stride_above_, minima_above_[k] + from, gray[x], gray_above_[from]);
     };
     const Before from_above[3] = {above(0), above(kDiagonals ? 1 : 0), above(kDiagonals ? 2 : 0)};
     std::uint8_t *const here = here_, *const sums = (kUp ? upward_ : row_.sums.row(0)) + cell,
@@ -165,6 +165,7 @@ class Along {
   RowPlanes left_, right_;
   std::uint8_t *paths_[3] = {}, *minima_[3] = {};
   const std::uint8_t *paths_above_[3] = {}, *minima_above_[3] = {}, *gray_above_ = nullptr;
+  std::ptrdiff_t stride_above_;
   std::uint8_t *before_, *here_, *upward_ = nullptr;
   std::uint8_t least_ = 0;
 };
@@ -179,13 +180,14 @@ class Back {
         gray_(sweep.in.left.value[0].row(y)),
         before_(row.back.row(0) + kGap),
         here_(row.back.row(1) + kGap) {
+    std::memset(before_, 0, static_cast<std::size_t>(sweep.lanes));
     std::memset(row.best.row(0), 255, static_cast<std::size_t>(sweep.lanes + sweep.w));
   }
 
   HWY_INLINE void pixel(int x) {
     const D d;
     const int n = static_cast<int>(hn::Lanes(d)), first = sweep_.first, lanes = sweep_.lanes;
-    const Before from_right = before(sweep_, gray_, x, gray_, x + 1, before_, &least_);
+    const Before from_right = before(sweep_, before_, &least_, gray_[x], gray_[x + 1]);
     const std::ptrdiff_t cell = static_cast<std::ptrdiff_t>(x) * lanes;
     const std::uint8_t *const sums = row_.sums.row(0) + cell, *const costs = row_.costs.row(0) + cell;
     // Of the right pixel x - d: lane 0 is x + 1 - lanes, and both rows begin `lanes` before x = 0.
