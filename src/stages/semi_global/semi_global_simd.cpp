@@ -15,6 +15,7 @@
 #define HWY_TARGET_INCLUDE "stages/semi_global/semi_global_simd.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway asks.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "stages/semi_global/semi_global-inl.h"
@@ -23,6 +24,8 @@ HWY_BEFORE_NAMESPACE();
 namespace duo::HWY_NAMESPACE {
 
 constexpr int kBlock = 32;  // pixels between two looks at the row before
+// The volume comes from main memory, and what fetches ahead by itself stops at each page.
+constexpr int kFetchAhead = 16, kLine = 64;  // pixels, bytes
 
 /// What all rows of one sweep share, as one thread sees it. Up: rows are taken from the bottom, and sums go to the volume.
 struct Sweep {
@@ -129,6 +132,8 @@ class Along {
                         *const costs = row_.costs.row(0) + cell;
     std::uint8_t* const paths[3] = {paths_[0] + x * stride, paths_[kPaths / 2] + x * stride, paths_[kPaths - 1] + x * stride};
     const std::uint8_t* const below = !kUp && upward_ != nullptr ? upward_ + cell : nullptr;
+    if (below != nullptr && x + kFetchAhead < sweep_.w)
+      for (int j = first / kLine * kLine; j < lanes; j += kLine) hwy::Prefetch(below + kFetchAhead * lanes + j);
     auto least_left = set(255);
     V least_above[3] = {least_left, least_left, least_left};
     for (int j = first; j < lanes; j += n) {
@@ -146,7 +151,7 @@ class Along {
         least_above[k] = hn::Min(least_above[k], l);
         sum = hn::SaturatedAdd(sum, l);
       }
-      hn::Store(sum, d, sums + j);
+      kUp ? hn::Stream(sum, d, sums + j) : hn::Store(sum, d, sums + j);  // up: not needed for long
     }
     const int pair = least(d, least_left, least_above[0]);
     least_ = static_cast<std::uint8_t>(first_of(pair));
@@ -312,6 +317,7 @@ void run(const Sweep& sweep) {
     if (!kUp && last >= 0) back.finish();
     last = i;
   }
+  if (kUp) hwy::FlushStream();
   if (kUp || last < 0) return;
   Back back(sweep, last, sweep.s.rows[rows + static_cast<std::size_t>(turn ^ 1)]);
   for (int x = sweep.w - 1; x >= 0; --x) back.pixel(x);
