@@ -1,5 +1,6 @@
 // duoptic bench: time of each stage and of whole frames, beside OpenCV's matchers in the same process on the same pair.
 #include <fmt/format.h>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <array>
@@ -27,6 +28,7 @@ constexpr char kFooter[] =
     "Examples:\n"
     "  duoptic bench\n"
     "  duoptic bench --engine simd --size 640x480 --repeat 31 --json\n"
+    "  duoptic bench --engine simd --instructions AVX2\n"
     "  duoptic bench --engine vulkan";
 
 constexpr int kMaxDisparity = 128;
@@ -34,7 +36,7 @@ constexpr int kMaxDisparity = 128;
 const std::set<std::string> kNotMatching = {"gray", "median", "gaussian", "rectify", "depth", "color"};
 
 struct Options {
-  std::string engine = "both", size = "both";
+  std::string engine = "both", size = "both", instructions;
   int repeat = 11;
   bool json = false;
 };
@@ -129,6 +131,20 @@ Result<Table> measure(const SyntheticPair& input, int threads, const Options& op
   return table;
 }
 
+/// Our engines use no better instruction set of the processor than this one; OpenCV keeps its own.
+Result<void> limit_instructions(const std::string& name) {
+  std::vector<std::string> known;
+  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {  // the best ones are the lowest bits
+    const std::int64_t target = left & -left;
+    known.emplace_back(hwy::TargetName(target));
+    if (known.back() != name) continue;
+    hwy::DisableTargets(target - 1);
+    return {};
+  }
+  return Error{ErrorCode::kBadInput,
+               fmt::format("use the instructions \"{}\": this build has for this processor: {}", name, fmt::join(known, ", "))};
+}
+
 bool on_device(const std::string& engine) { return engine == "vulkan" || engine.starts_with("vulkan:"); }
 
 nlohmann::json to_json(Times t) { return {{"wall_ms", t.wall_ms}, {"cpu_ms", t.cpu_ms}}; }
@@ -189,6 +205,7 @@ void print(const Table& table) {
 }
 
 Result<Exit> run(const Options& options) {
+  if (!options.instructions.empty()) DUO_TRY(limit_instructions(options.instructions));
   nlohmann::json out = nlohmann::json::array();
   for (const Size size : {Size{640, 480}, Size{1280, 720}}) {
     if (options.size != "both" && options.size != fmt::format("{}x{}", size.width, size.height)) continue;
@@ -229,6 +246,9 @@ Command add(CLI::App& app) {
   sub->add_option("--size", options->size, "Size of the pictures")
       ->check(CLI::IsMember({"both", "640x480", "1280x720"}))
       ->capture_default_str();
+  sub->add_option("--instructions", options->instructions,
+                  "Use no better ones than these, by a name that duoptic version lists; without it, the best there are")
+      ->type_name("NAME");
   sub->add_option("--repeat", options->repeat, "Runs of each contestant; the reference runs once")
       ->type_name("N")
       ->check(CLI::Range(1, 1000))
