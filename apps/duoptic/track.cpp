@@ -10,6 +10,8 @@
 #include "arm_run.h"
 #include "interrupt.h"
 #include "progress.h"
+#include "recording.h"
+#include "rig_report.h"
 #include "sink_options.h"
 #include "skew_watch.h"
 #include "timing.h"
@@ -32,13 +34,14 @@ constexpr char kFooter[] =
     "  duoptic track clip.mkv --select hand=.. --select elbow=.. --select shoulder=.. --realtime --vmc 127.0.0.1:39539 \\\n"
     "      --bvh arm.bvh --csv arm.csv -o arm.jsonl                       a recording, with its own rig, to an avatar and to "
     "files\n"
-    "  duoptic track camera:0 camera:2 --rig rig.json --at-frame 60 --select ...   (duoptic cameras tells the names)";
+    "  duoptic track camera:0 camera:2 --rig rig.json --at-frame 60 --select ...   (duoptic cameras tells the names)\n"
+    "  duoptic track camera:0 camera:2 --rig rig.json --select ... --record clip.mkv -o clip.jsonl   both pictures and arm";
 
 struct Options {
-  std::string left, right, rig;
+  std::string left, right, rig, record;
   std::vector<std::string> select, select2;
   std::int64_t at_frame = 0;
-  bool stats = false, quiet = false, realtime = false;
+  bool force = false, stats = false, quiet = false, realtime = false;
   ArmOptions arm;
   SinkOptions sinks;
 };
@@ -86,7 +89,7 @@ std::vector<ArmSelection> selections(const Options& options) {
   return arms;
 }
 
-/// Says what happens to live cameras, once, and to the engine.
+/// Says what happens to live cameras, once, to the engine, and to the recording.
 class Events {
  public:
   explicit Events(const CLI::App& app) : app_(app) {}
@@ -97,10 +100,17 @@ class Events {
   void happened(const std::string& event) {
     if (!event.empty()) say(app_, "warning: " + event);
   }
+  void look_at(const Recording& recording) {
+    const auto failure = recording_failed_ ? std::nullopt : recording.failure();
+    if (!failure) return;
+    say(app_, fmt::format("warning: {}; tracking goes on", failure->what));
+    recording_failed_ = true;
+  }
 
  private:
   const CLI::App& app_;
   std::string said_;
+  bool recording_failed_ = false;
 };
 
 /// As ArmRun::next(), but waits for live cameras that are away and ends with Ctrl-C.
@@ -133,8 +143,8 @@ struct Summary {
 };
 
 /// Tracks from the first frame to the end of the files, or to Ctrl-C.
-Result<Summary> track_all(ArmRun& run, Events& events, const std::vector<ArmSelection>& arms, const Options& options,
-                          const CLI::App& app) {
+Result<Summary> track_all(ArmRun& run, Events& events, const Recording& recording, const std::vector<ArmSelection>& arms,
+                          const Options& options, const CLI::App& app) {
   DUO_TRY(run.select(arms));
   DUO_TRY_ASSIGN(const auto sinks, options.sinks.make(run.header(), run.frames().live(), app));
   Summary summary;
@@ -149,6 +159,7 @@ Result<Summary> track_all(ArmRun& run, Events& events, const std::vector<ArmSele
     if (run.header().live)
       summary.latency_ms.push_back(clock_ms(CLOCK_MONOTONIC) - static_cast<double>(frame.left.t_ns) * 1e-6);
     progress.frame(frame.number + 1);
+    events.look_at(recording);
     if (const auto warning = run.header().live ? skew.see(frame) : std::nullopt) say(app, "warning: " + *warning);
     DUO_TRY_ASSIGN(summary.end, next_frame(run, events));
     if (summary.end != Next::kPicture) break;
@@ -180,13 +191,22 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, rig));
   if (!input.rig) throw CLI::RequiredError("--rig");  // most sources do not bring their own
   if (options.realtime && !input.pairs->live()) input.pairs = in_real_time(std::move(input.pairs));
+  Recording recording;  // before what reads the pairs
+  if (!options.record.empty()) {
+    DUO_TRY(recording.start(options.record, {.frame_s = input.pairs->frame_s(),
+                                             .rig = input.rig,
+                                             .date = input.pairs->live() ? date_now() : "",
+                                             .replace = options.force}));
+    input.pairs = std::make_unique<Tap>(std::move(input.pairs), recording);
+  }
   DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(input), options.arm, options.at_frame));
   std::optional<Interrupt> interrupt;
   if (run.header().live) interrupt.emplace();
   Events events(app);
   DUO_TRY(first_frame(run, events, options.at_frame, options.left));
   Result<Summary> summary = Summary{};
-  const Times times = timed([&] { summary = track_all(run, events, arms, options, app); });
+  const Times times = timed([&] { summary = track_all(run, events, recording, arms, options, app); });
+  recording.stop();
   if (!summary) return summary.error();
   // stdout belongs to the lines when they go there.
   if (options.stats)
@@ -195,6 +215,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
     fmt::print("{}\n", text_of(*summary, times.wall_ms / 1000, run, options));
   if (const std::string warning = run.frames().warning(); !run.header().live && !warning.empty())
     say(app, "warning: " + warning);
+  if (const auto failure = recording.failure()) return *failure;
   return summary->end == Next::kCut ? Exit::kCut : Exit::kOk;
 }
 
@@ -220,6 +241,10 @@ Command add(CLI::App& app) {
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
       ->capture_default_str();
   options->sinks.add_to(*sub);
+  sub->add_option("--record", options->record,
+                  "Record the pairs on their way, also those that come too late to be tracked; track takes the file again")
+      ->type_name("FILE.mkv");
+  sub->add_flag("--force", options->force, "Replace an earlier recording of that name");
   sub->add_flag("--realtime", options->realtime,
                 "Take files at the pace of their capture times, as if live: late pairs are dropped");
   options->arm.add_to(*sub);

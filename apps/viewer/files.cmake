@@ -6,7 +6,6 @@ target_sources(duoptic_tool PRIVATE
   ${dir}/gpu.cpp
   ${dir}/panels.cpp
   ${dir}/player.cpp
-  ${dir}/recording.cpp
   ${dir}/sidebar.cpp
   ${dir}/style.cpp
   ${dir}/swapchain.cpp

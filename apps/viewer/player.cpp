@@ -170,7 +170,9 @@ void Player::record(bool on) {
   post([this, on] {
     if (!on) return recording_.stop();
     if (still_ || resting()) return;
-    recording_.start({.frame_s = header_.frame_s, .rig = rig_, .date = live_ ? date_now() : ""});
+    // What went wrong is in its status, which the window shows.
+    static_cast<void>(
+        recording_.start(dated_recording_name(), {.frame_s = header_.frame_s, .rig = rig_, .date = live_ ? date_now() : ""}));
   });
 }
 

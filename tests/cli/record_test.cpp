@@ -143,6 +143,23 @@ TEST_F(Record, FullDiskKeepsWhatWasRecorded) {
   EXPECT_FALSE(fs::exists(at("empty.mkv")));
 }
 
+TEST_F(Record, TrackRecordsWhatItTracks) {
+  const std::string track = std::string(kSelect) + "--rig rig.json ";
+  const Ended tracked = run("track left.avi right.avi --record way.mkv" + track);
+  EXPECT_EQ(tracked.exit, 0) << tracked.err;
+  EXPECT_EQ(test::bytes_of(at("way.mkv")), test::bytes_of(at("jpeg.mkv")));
+  expect_failure("track left.avi right.avi --record way.mkv" + track, kOutput, "choose another name");
+  EXPECT_EQ(run("track left.avi right.avi --record way.mkv --force" + track).exit, 0);
+
+  // The disk is full, and tracking goes on to the end.
+  const auto blocks = fs::file_size(at("raw.mkv")) / 512 * 2 / 3;
+  const Ended full = run("track left.mp4 right.mp4 --record short.mkv" + track, "ulimit -f " + std::to_string(blocks) + ";");
+  EXPECT_EQ(full.exit, kOutput) << full.err;
+  EXPECT_NE(full.err.find("tracking goes on"), std::string::npos) << full.err;
+  EXPECT_EQ(std::count(full.out.begin(), full.out.end(), '\n'), 1 + kPairs);
+  EXPECT_GE(run("play short.mkv --json").json()["pairs"], 2);
+}
+
 TEST_F(Record, SeveralSinksAtOnceOrNone) {
   const std::string track = "track jpeg.mkv" + std::string(kSelect);
   const Ended all = run(track +

@@ -1,4 +1,5 @@
-// What the record button does: every pair of a live source, and what becomes of it when the disk or its folder says no.
+// What the record button and track --record do: every pair of a live source, and what becomes of it when the disk or its folder
+// says no.
 #include "recording.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,7 @@
 
 #include "tests/write_media.h"
 
-namespace duo::app::view {
+namespace duo::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -49,10 +50,10 @@ class Cameras final : public PairSource {
 };
 
 /// Recordings go to the working folder.
-class ViewRecording : public ::testing::Test {
+class RecordingOnTheWay : public ::testing::Test {
  protected:
-  ViewRecording() : before_(fs::current_path()) { fs::current_path(folder_ / "."); }
-  ~ViewRecording() override { fs::current_path(before_); }
+  RecordingOnTheWay() : before_(fs::current_path()) { fs::current_path(folder_ / "."); }
+  ~RecordingOnTheWay() override { fs::current_path(before_); }
 
   static RecordingReport report_of(const RecordingStatus& status) {
     const auto report = inspect_recording(status.name);
@@ -72,8 +73,8 @@ class ViewRecording : public ::testing::Test {
   Pair pair_;
 };
 
-TEST_F(ViewRecording, HasThePairsThatNobodyTookInTime) {
-  recording_.start({});
+TEST_F(RecordingOnTheWay, HasThePairsThatNobodyTookInTime) {
+  ASSERT_TRUE(recording_.start(dated_recording_name(), {}));
   Tap tap(std::make_unique<Cameras>(), recording_);
   play(tap);
   EXPECT_EQ(pair_.sequence, kPairs - 1U);  // the newest
@@ -89,21 +90,21 @@ TEST_F(ViewRecording, HasThePairsThatNobodyTookInTime) {
   EXPECT_FALSE(report.cut);
 
   // One of the same second, and one without a pair.
-  recording_.start({});
+  ASSERT_TRUE(recording_.start(dated_recording_name(), {}));
   EXPECT_NE(recording_.status().name, status.name);
   recording_.stop();
   EXPECT_FALSE(fs::exists(recording_.status().name));
   EXPECT_TRUE(fs::exists(status.name));
 }
 
-TEST_F(ViewRecording, FullDiskKeepsWhatWasWritten) {
+TEST_F(RecordingOnTheWay, FullDiskKeepsWhatWasWritten) {
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
   constexpr rlim_t kRoom = 150'000;  // stands for the full disk
   const rlimit small = {kRoom, before.rlim_max};
   setrlimit(RLIMIT_FSIZE, &small);
-  recording_.start({});
+  ASSERT_TRUE(recording_.start(dated_recording_name(), {}));
   {
     Tap tap(std::make_unique<Cameras>(), recording_);
     play(tap);  // what is watched goes on
@@ -122,16 +123,16 @@ TEST_F(ViewRecording, FullDiskKeepsWhatWasWritten) {
   EXPECT_FALSE(report.cut);
 }
 
-TEST_F(ViewRecording, SaysThatItsFolderCannotBeWritten) {
+TEST_F(RecordingOnTheWay, SaysThatItsFolderCannotBeWritten) {
   const fs::path gone = folder_ / "gone";
   fs::create_directory(gone);
   fs::current_path(gone);
   fs::remove(gone);
-  recording_.start({});
+  EXPECT_FALSE(recording_.start(dated_recording_name(), {}));
   EXPECT_FALSE(recording_.status().on);
   EXPECT_NE(recording_.status().problem.find("cannot write 'duoptic_"), std::string::npos) << recording_.status().problem;
   EXPECT_EQ(recording_.failure()->code, ErrorCode::kWriteFailed);
 }
 
 }  // namespace
-}  // namespace duo::app::view
+}  // namespace duo::app

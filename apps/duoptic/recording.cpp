@@ -8,11 +8,9 @@
 #include <new>
 #include <utility>
 
-namespace duo::app::view {
-namespace {
+namespace duo::app {
 
-/// "duoptic_2026-05-31_14-03-59.mkv", the user's time.
-std::string dated_name() {
+std::string dated_recording_name() {
   const std::string stem = fmt::format("duoptic_{:%Y-%m-%d_%H-%M-%S}", fmt::localtime(std::time(nullptr)));
   std::error_code ignored;
   std::string name = stem + ".mkv";
@@ -20,19 +18,20 @@ std::string dated_name() {
   return name;
 }
 
-}  // namespace
-
-void Recording::start(const RecorderSetup& setup) {
+Result<void> Recording::start(const std::string& name, const RecorderSetup& setup) {
   const std::lock_guard lock(file_mutex_);
-  if (file_) return;
-  const std::string name = dated_name();
+  if (file_) return {};
   {
     const std::lock_guard status_lock(mutex_);
     status_ = {.on = true, .name = name};
   }
   auto file = Recorder::open(name, setup);
-  if (!file) return fail(file.error());
+  if (!file) {
+    fail(file.error());
+    return file.error();
+  }
   file_.emplace(std::move(*file));
+  return {};
 }
 
 void Recording::stop() {
@@ -122,4 +121,4 @@ void Tap::read_all() {
   }
 }
 
-}  // namespace duo::app::view
+}  // namespace duo::app

@@ -1,4 +1,4 @@
-// A recording that its user starts and ends while pairs pass by.
+// A recording of pairs on their way to whoever else takes them.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@
 #include "duoptic/recording.h"
 #include "duoptic/source.h"
 
-namespace duo::app::view {
+namespace duo::app {
 
 /// Of the recording that runs, or ran last.
 struct RecordingStatus {
@@ -25,13 +25,18 @@ struct RecordingStatus {
   std::string problem = {};  // empty: none
 };
 
+/// "duoptic_2026-05-31_14-03-59.mkv" in the working folder, by the user's time; a name that no file has.
+std::string dated_recording_name();
+
 /// One file after the other.
 ///
 /// Threads  any
 class Recording {
  public:
-  /// Under a name with date and time in the working folder; what went wrong is in status().
-  void start(const RecorderSetup& setup);
+  /// Does nothing while one runs.
+  ///
+  /// Errors  those of Recorder::open(); they are in status(), too
+  Result<void> start(const std::string& name, const RecorderSetup& setup);
   /// Completes the file.
   void stop();
   /// Writes the pair when a recording runs.
@@ -54,7 +59,7 @@ class Recording {
 };
 
 /// Gives a source's pairs, each of which a recording sees first. A live source is read in a thread of its own: all its pairs
-/// are recorded, also those that nobody takes in time, and while its viewer pauses.
+/// are recorded, also those that nobody takes in time, and while whoever takes them pauses.
 class Tap final : public PairSource {
  public:
   Tap(std::unique_ptr<PairSource> source, Recording& recording);
@@ -85,4 +90,4 @@ class Tap final : public PairSource {
   std::thread reader_;  // last: it uses all of the above
 };
 
-}  // namespace duo::app::view
+}  // namespace duo::app
