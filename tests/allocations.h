@@ -1,4 +1,4 @@
-// Counts heap allocations of the whole program; include in exactly one source file of a test program.
+// Counts heap allocations of the whole program, and their bytes; include in exactly one source file of a test program.
 #pragma once
 
 #include <atomic>
@@ -6,10 +6,11 @@
 #include <new>
 
 namespace duo::test {
-inline std::atomic<long> allocations{0};
+inline std::atomic<long> allocations{0}, allocated_bytes{0};  // what was freed is not taken off
 
 inline void* counted(std::size_t bytes, std::size_t align) {
   allocations.fetch_add(1, std::memory_order_relaxed);
+  allocated_bytes.fetch_add(static_cast<long>(bytes), std::memory_order_relaxed);
   void* p =
       align > alignof(std::max_align_t) ? std::aligned_alloc(align, (bytes + align - 1) / align * align) : std::malloc(bytes);
   if (p == nullptr) throw std::bad_alloc();

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "tests/agree.h"
+#include "tests/allocations.h"
 
 namespace duo {
 namespace {
@@ -49,6 +50,21 @@ void expect_engines_agree(Size size, int max_disparity, int paths, bool masked) 
       }
     }
   });
+}
+
+// With paths from below there is a volume of a byte for each pixel and disparity; all else together is half of that at most.
+TEST(Sgm, MemoryIsOneAndAHalfBytesACellAtMost) {
+  for (const Size size : {Size{640, 480}, Size{1280, 720}}) {
+    Pool pool(2);
+    const MatchSetup setup{size, 128, true};
+    const long before = test::allocated_bytes;
+    const simd::Sgm matcher(pool, *sgm_params("paths8", {}), setup);
+    const double cells = double(size.width) * size.height * setup.max_disparity;
+    const double bytes = static_cast<double>(test::allocated_bytes - before) / cells;
+    EXPECT_GT(bytes, 1) << "the counter itself works";
+    EXPECT_LT(bytes, 1.5) << size.width;
+    std::printf("%dx%d: %.2f bytes a cell\n", size.width, size.height, bytes);
+  }
 }
 
 TEST(Sgm, EnginesAgree) {
