@@ -38,6 +38,7 @@ struct Options {
   std::string left, right, rig;
   std::vector<std::string> select, select2;
   std::int64_t at_frame = 0;
+  double skew_ms = 0;
   bool stats = false, quiet = false, realtime = false;
   ArmOptions arm;
   SinkOptions sinks;
@@ -177,7 +178,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(rig, load_rig(options.rig));
   }
-  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, rig));
+  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, rig, options.skew_ms));
   if (!input.rig) throw CLI::RequiredError("--rig");  // most sources do not bring their own
   if (options.realtime && !input.pairs->live()) input.pairs = in_real_time(std::move(input.pairs));
   DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(input), options.arm, options.at_frame));
@@ -219,6 +220,7 @@ Command add(CLI::App& app) {
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
       ->capture_default_str();
+  add_skew_option(*sub, options->skew_ms);
   options->sinks.add_to(*sub);
   sub->add_flag("--realtime", options->realtime,
                 "Take files at the pace of their capture times, as if live: late pairs are dropped");
