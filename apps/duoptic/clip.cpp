@@ -54,7 +54,9 @@ Result<ClipTruth> load_clip(const fs::path& folder) {
     return Error{ErrorCode::kNotFound,
                  fmt::format("cannot evaluate {}: it has no truth.json that can be read", folder.string())};
   try {
-    clip.frames = frames_of(nlohmann::json::parse(file));
+    const nlohmann::json truth = nlohmann::json::parse(file);
+    clip.skew_ms = truth.at("meta").value("skew_ms", 0.0);
+    clip.frames = frames_of(truth);
   } catch (const nlohmann::json::exception& error) {
     return Error{ErrorCode::kBadInput, fmt::format("cannot use {}: {}", path.string(), error.what())};
   }

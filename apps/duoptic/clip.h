@@ -20,10 +20,12 @@ struct JointTruth {
 };
 using ArmTruth = std::array<JointTruth, kArmJoints>;
 
-/// Of truth.json: meta.selected_arm ("left" or "right") and frames[i].joints.ARM_JOINT.{xyz, uv_left, vis_left, vis_right}.
+/// Of truth.json: meta.selected_arm ("left" or "right"), meta.skew_ms (0 where there is none), frames[i].joints.ARM_JOINT.{xyz,
+/// uv_left, vis_left, vis_right}.
 struct ClipTruth {
   std::string name;
   Rig rig;
+  double skew_ms = 0;  // how much later the right pictures were taken
   std::vector<ArmTruth> frames;
 
   /// The first frame in which all joints are visible; -1: none.

@@ -9,6 +9,7 @@
 
 #include "ahead.h"
 #include "duoptic/engine.h"
+#include "duoptic/in_step.h"
 #include "timing.h"
 
 namespace duo::app {
@@ -75,8 +76,11 @@ class FrameAhead {
   }
   void make_frame(Matched& of) {
     of.engine_ms = timed([&] {
+                     Image<Rgb8>* moved = in_step_.right_of(of.pair);
+                     if (moved != nullptr) std::swap(of.pair.right.pixels, *moved);  // for the engine only
                      engine_.submit(of.pair);
                      of.frame = &engine_.collect();
+                     if (moved != nullptr) std::swap(of.pair.right.pixels, *moved);
                    }).wall_ms;
     of.event = engine_.take_event();
   }
@@ -86,6 +90,7 @@ class FrameAhead {
   const std::int64_t first_, count_;
   std::int64_t read_ = 0;
   TimeNs start_ns_ = 0;
+  InStep in_step_;
   Matched last_;
   std::optional<Ahead<Pair>> pairs_;  // the threads come last, in the order of who uses whom
   std::optional<Ahead<Matched>> frames_;

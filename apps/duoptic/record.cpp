@@ -28,7 +28,7 @@ constexpr char kFooter[] =
 
 struct Options {
   std::string left, right, output, rig;
-  double seconds = 0;  // 0: to the end, or until Ctrl-C
+  double skew_ms = 0, seconds = 0;  // 0: to the end, or until Ctrl-C
   bool force = false, json = false, quiet = false;
 };
 
@@ -79,7 +79,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(setup.rig, load_rig(options.rig));
   }
-  DUO_TRY_ASSIGN(const Input input, open_input(options.left, options.right, setup.rig));
+  DUO_TRY_ASSIGN(const Input input, open_input(options.left, options.right, setup.rig, options.skew_ms));
   const auto& pairs = input.pairs;
   setup.rig = input.rig;
   setup.frame_s = pairs->frame_s();
@@ -108,6 +108,7 @@ Command add(CLI::App& app) {
   sub->add_option("RIGHT", options->right, "Right camera or video");
   sub->add_option("-o,--output", options->output, "The recording, NAME.mkv")->type_name("FILE")->required();
   sub->add_option("--rig", options->rig, "Calibration to keep in the recording; else the source's own")->type_name("FILE");
+  add_skew_option(*sub, options->skew_ms);
   sub->add_option("--seconds", options->seconds, "How long; without it to the end, or until Ctrl-C")
       ->type_name("S")
       ->check(CLI::PositiveNumber);

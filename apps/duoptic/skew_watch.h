@@ -10,8 +10,8 @@
 
 namespace duo::app {
 
-/// How far off the depth of a moving point is: between the two pictures it moves v dt along the baseline, which is taken for
-/// disparity: dz = z v dt / b.
+/// How far off the depth of a moving point is when nothing is done about it: between the two pictures it moves v dt along the
+/// baseline, which is taken for disparity: dz = z v dt / b.
 ///
 /// Units   metres, seconds; v along the baseline; signs are kept
 double skew_depth_error_m(double z_m, double speed_m_s, double skew_s, double baseline_m);
@@ -21,7 +21,8 @@ class SkewWatch {
  public:
   explicit SkewWatch(double baseline_m) : baseline_m_(baseline_m) {}
 
-  /// A warning when a seen joint's depth is off by more than 30 mm and by more than its sigma; then none for ten seconds.
+  /// A warning when a seen joint's depth may still be off by more than 30 mm and by more than its sigma; then none for ten
+  /// seconds.
   std::optional<std::string> see(const TrackedFrame& frame);
 
  private:

@@ -16,8 +16,10 @@ constexpr char kFooter[] =
     "Writes into DIR: left.avi and right.avi (MJPEG, 30 frames/s, two distorted, noisy webcams), calibration_truth.yml,\n"
     "truth.json (joints of every frame in the raw left camera), and every tenth frame depth/depth_NNNN.png (16 bits, 0.1 mm)\n"
     "with the person's mask depth/figure_NNNN.png. DIR appears when all is done; an earlier clip there is replaced.\n\n"
+    "With --skew-ms the right pictures show a later moment, as those of webcams that are not in step do; truth.json tells.\n\n"
     "Example:\n"
     "  duoptic synth --script behind --seed 2 -o clip\n"
+    "  duoptic synth --script wave --skew-ms 16 -o late\n"
     "  duoptic eval clip clip";
 
 const std::map<std::string, SyntheticArm> kArms = {
@@ -27,6 +29,7 @@ struct Options {
   SyntheticClipSetup clip;
   std::string size = "640x480", arm = "auto", folder;
   int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  double skew_ms = 0;
   bool quiet = false;
 };
 
@@ -72,6 +75,10 @@ Command add(CLI::App& app) {
   sub->add_option("--arm", options->arm, "The person's own left or right; auto: by the seed")
       ->check(CLI::IsMember({"auto", "left", "right"}))
       ->capture_default_str();
+  sub->add_option("--skew-ms", options->skew_ms, "How much later than the left one the right camera takes its pictures")
+      ->type_name("MS")
+      ->check(CLI::Range(-100.0, 100.0))
+      ->capture_default_str();
   sub->add_option("--threads", options->threads, "Threads; the result does not depend on them")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
@@ -80,6 +87,7 @@ Command add(CLI::App& app) {
   sub->parse_complete_callback([options] {
     options->clip.size = parse_size(options->size);
     options->clip.arm = kArms.at(options->arm);
+    options->clip.skew_s = options->skew_ms * 1e-3;
   });
   sub->footer(kFooter);
   return {sub, [options, sub] { return run(*options, *sub); }};

@@ -41,6 +41,7 @@ struct Options {
   std::string left, right, rig, record;
   std::vector<std::string> select, select2;
   std::int64_t at_frame = 0;
+  double skew_ms = 0;
   bool force = false, stats = false, quiet = false, realtime = false;
   ArmOptions arm;
   SinkOptions sinks;
@@ -188,7 +189,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(rig, load_rig(options.rig));
   }
-  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, rig));
+  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, rig, options.skew_ms));
   if (!input.rig) throw CLI::RequiredError("--rig");  // most sources do not bring their own
   if (options.realtime && !input.pairs->live()) input.pairs = in_real_time(std::move(input.pairs));
   Recording recording;  // before what reads the pairs
@@ -240,6 +241,7 @@ Command add(CLI::App& app) {
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
       ->capture_default_str();
+  add_skew_option(*sub, options->skew_ms);
   options->sinks.add_to(*sub);
   sub->add_option("--record", options->record,
                   "Record the pairs on their way, also those that come too late to be tracked; track takes the file again")

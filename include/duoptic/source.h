@@ -91,4 +91,7 @@ Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left
 /// due, too.
 std::unique_ptr<PairSource> in_real_time(std::unique_ptr<PairSource> pairs);
 
+/// The same pairs, each right picture taken `skew_ns` later than its source says: two videos do not tell.
+std::unique_ptr<PairSource> with_skew(std::unique_ptr<PairSource> pairs, TimeNs skew_ns);
+
 }  // namespace duo

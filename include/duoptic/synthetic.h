@@ -54,6 +54,7 @@ struct SyntheticClipSetup {
   std::string script = "tour";  // wave, reach, sweep, behind, out, light, or tour: one after the other
   int frames = 0;               // 30 a second; 0: the script once; more than it has: it starts again
   SyntheticArm arm = SyntheticArm::kBySeed;
+  double skew_s = 0;  // the right camera's shutter opens that much later than the left one's, as free-running webcams' do
 };
 
 /// Where a joint is. It lies inside the body: what a camera sees of it is nearer.
@@ -67,7 +68,7 @@ struct SyntheticJoint {
       surface_z_left_m;  // of the person's first surface on the way to the joint; none where the room hides it
 };
 
-/// One moment of a clip, with its truth.
+/// One moment of a clip, with its truth: all of the left picture's moment but what the right camera sees, which is of its own.
 struct SyntheticClipFrame {
   Pair pair;
   double t_s = 0;

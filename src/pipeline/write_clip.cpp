@@ -153,6 +153,7 @@ Json meta_of(const SyntheticClipSetup& setup, const Rig& rig, const std::string&
           {"script", setup.script},
           {"seed", setup.seed},
           {"shutter_s", 0.0},
+          {"skew_ms", setup.skew_s * 1e3},
           {"units", "metres"},
           {"frame_convention", "left camera: x right, y down, z forward"},
           {"baseline_m", rig.baseline_m()},

@@ -80,6 +80,20 @@ TEST(WriteClip, DepthIsThatOfAPinhole) {
   EXPECT_LT(person, 1500);
 }
 
+TEST(WriteClip, ALateRightCamera) {
+  const test::TempFolder temp;
+  SyntheticClipSetup setup = setup_of(2);
+  ASSERT_TRUE(write_clip(setup, temp / "clip", 2, kSilent).has_value());
+  setup.skew_s = 0.016;
+  ASSERT_TRUE(write_clip(setup, temp / "late", 2, kSilent).has_value());
+  EXPECT_EQ(test::bytes_of(temp / "clip/left.avi"), test::bytes_of(temp / "late/left.avi"));
+  EXPECT_NE(test::bytes_of(temp / "clip/right.avi"), test::bytes_of(temp / "late/right.avi"));
+  EXPECT_EQ(nlohmann::json::parse(test::bytes_of(temp / "clip/truth.json"))["meta"]["skew_ms"], 0.0);
+  EXPECT_EQ(nlohmann::json::parse(test::bytes_of(temp / "late/truth.json"))["meta"]["skew_ms"], 16.0);
+  setup.skew_s = 0.2;
+  EXPECT_FALSE(write_clip(setup, temp / "later", 2, kSilent).has_value());
+}
+
 TEST(WriteClip, AppearsWholeOrNotAtAll) {
   const test::TempFolder temp;
   const auto entries = [&] { return std::distance(fs::directory_iterator(temp / ""), fs::directory_iterator()); };

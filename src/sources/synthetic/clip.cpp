@@ -132,17 +132,33 @@ struct SyntheticClip::State {
     return scene;
   }
 
-  SyntheticJoint joint(const NamedJoint& named, const Scene& figure_scene) const {
-    const Vec3 p = staging.world_from_person * named.p_in_person_m;
+  // What there is to see at one moment.
+  struct Shot {
+    Script::Moment moment;
+    Lamps lamps;
+    Skeleton bones;
+    Scene figure;
+  };
+  Shot shot(double t_s) const {
+    const Script::Moment moment = script.at(t_s);
+    const Lamps lamps{moment.lamp};
+    const Skeleton bones = skeleton(moment);
+    return {moment, lamps, bones, figure(bones, lamps)};
+  }
+
+  SyntheticJoint joint(const NamedJoint& named, const Shot& shot, const NamedJoint& right_named, const Shot& right_shot) const {
+    const auto in_world = [&](const NamedJoint& j) { return staging.world_from_person * j.p_in_person_m; };
+    const Vec3 p = in_world(named);
     const double tolerance = tolerance_m(named.name);
-    const Seen l = look_at(p, rig.left, world_from_left, room, figure_scene, tolerance),
-               r = look_at(p, rig.right, world_from_right, room, figure_scene, tolerance);
+    const Seen l = look_at(p, rig.left, world_from_left, room, shot.figure, tolerance),
+               r = look_at(in_world(right_named), rig.right, world_from_right, room, right_shot.figure, tolerance);
     return {named.name, inverse(world_from_left) * p, l.uv_px, r.uv_px, l.in, r.in, l.visible, r.visible, l.surface_z_m};
   }
 };
 
 Result<SyntheticClip> SyntheticClip::open(const SyntheticClipSetup& setup, int threads) {
   constexpr int kMaxSide = 4096, kMaxFrames = 100000;
+  constexpr double kMaxSkew_s = 0.1;
   const auto refused = [](const std::string& why) {
     return Error{ErrorCode::kBadInput, "cannot render a synthetic clip: " + why};
   };
@@ -153,6 +169,8 @@ Result<SyntheticClip> SyntheticClip::open(const SyntheticClipSetup& setup, int t
     return refused(fmt::format("{}x{} pixels; choose 1 to {} each way", setup.size.width, setup.size.height, kMaxSide));
   if (setup.frames < 0 || setup.frames > kMaxFrames)
     return refused(fmt::format("{} frames; choose 1 to {}, or 0 for the script once", setup.frames, kMaxFrames));
+  if (!(std::abs(setup.skew_s) <= kMaxSkew_s))
+    return refused(fmt::format("the right camera {} s late; choose {} at most", setup.skew_s, kMaxSkew_s));
   int arm = setup.arm == SyntheticArm::kLeft ? kLeftSide : kRightSide;
   if (setup.arm == SyntheticArm::kBySeed) arm = (setup.seed & 1) != 0 ? kRightSide : kLeftSide;
   return SyntheticClip(std::make_unique<State>(setup, threads, arm));
@@ -169,21 +187,20 @@ SyntheticClipFrame SyntheticClip::frame(int index) {
   State& s = *state_;
   SyntheticClipFrame out;
   out.t_s = index / kFramesPerSecond;
-  const Script::Moment moment = s.script.at(out.t_s);
-  const Lamps lamps{moment.lamp};
-  const Skeleton bones = s.skeleton(moment);
-  const Scene figure = s.figure(bones, lamps);
-  out.act = moment.act;
-  out.ceiling_light = moment.lamp;
+  const State::Shot shot = s.shot(out.t_s), right_shot = s.shot(out.t_s + s.setup.skew_s);
+  out.act = shot.moment.act;
+  out.ceiling_light = shot.moment.lamp;
 
   const SyntheticSetup at{.size = s.setup.size, .seed = s.setup.seed, .t_s = out.t_s};
-  Backdrop::Drawn left = s.left.draw(s.pool, figure, lamps), right = s.right.draw(s.pool, figure, lamps);
+  Backdrop::Drawn left = s.left.draw(s.pool, shot.figure, shot.lamps),
+                  right = s.right.draw(s.pool, right_shot.figure, right_shot.lamps);
   out.pair.left = taken(develop(s.pool, left.colors, webcam(at, 0)), out.t_s);
-  out.pair.right = taken(develop(s.pool, right.colors, webcam(at, 1)), out.t_s);
+  out.pair.right = taken(develop(s.pool, right.colors, webcam(at, 1)), out.t_s + s.setup.skew_s);
   out.pair.sequence = out.pair.left.sequence = out.pair.right.sequence = static_cast<std::uint64_t>(index);
   out.depth_left_m = std::move(left.z_m);
   out.figure_left = std::move(left.is_figure);
-  for (const NamedJoint& named : joints_of(bones)) out.joints.push_back(s.joint(named, figure));
+  const auto joints = joints_of(shot.bones), right_joints = joints_of(right_shot.bones);
+  for (std::size_t i = 0; i < joints.size(); ++i) out.joints.push_back(s.joint(joints[i], shot, right_joints[i], right_shot));
   return out;
 }
 

@@ -52,7 +52,7 @@ void Arm::track(const Scene& scene, std::span<const Vec3> rivals) {
 
   const Prediction predicted = predict();
   const Observation seen = observe(scene, predicted, rivals);
-  update(scene.grid, predicted, seen);
+  update(scene, predicted, seen);
 
   learn(scene, seen.arm);
 }
@@ -104,15 +104,21 @@ Arm::Observation Arm::observe(const Scene& scene, const Prediction& predicted, s
   return out;
 }
 
-void Arm::update(const Grid& grid, const Prediction& predicted, const Observation& seen) {
-  update_hand(grid, predicted, seen.arm);
-  update_elbow(predicted, seen);
+void Arm::update(const Scene& scene, const Prediction& predicted, const Observation& seen) {
+  update_hand(scene, predicted, seen.arm);
+  update_elbow(scene, predicted, seen);
   if (seen.arm) return;
   const Vec3 fore = hand_.p - elbow_.p;  // a hidden hand stays within the forearm's reach
   hand_.p = elbow_.p + (std::min(lengths_.fore_m, norm(fore)) / std::max(1e-6, norm(fore))) * fore;
 }
 
-void Arm::update_hand(const Grid& grid, const Prediction& predicted, const std::optional<Candidate>& seen) {
+// A joint that moves along the baseline by v dt between the two pictures seems z v dt / b off in depth; the pictures were put
+// to one moment, and a share of that is left. In which direction the speed is wrong nobody knows, so all of it counts.
+double Arm::skew_sigma_m(const Scene& scene, const TrackedJoint& joint) const {
+  return params_.skew_left * joint.p.z * norm(joint.step) / frame_s_ * std::abs(scene.skew_s) / scene.grid.camera.baseline_m;
+}
+
+void Arm::update_hand(const Scene& scene, const Prediction& predicted, const std::optional<Candidate>& seen) {
   constexpr double kGain = 0.85, kStepGain = 0.7, kHiddenStep = 0.7, kMostSigmaM = 2;
   constexpr int kForgetStep = 2;  // frames: after a gap the way since the last measurement says nothing of speed
   if (!seen) {
@@ -130,11 +136,12 @@ void Arm::update_hand(const Grid& grid, const Prediction& predicted, const std::
   hand_.state = JointState::kSeen;
   hand_.confidence = confidence_of(seen->score);
   hand_.sigma_m = std::sqrt(square(params_.hand_sigma_m) +
-                            square(params_.hand_depth_sigmas * grid.z_sigma_m(now.z, params_.disparity_sigma_px)) +
-                            square(params_.hand_lag * norm(step)) + square(params_.hand_cut_sigma_m * seen->hand.cut));
+                            square(params_.hand_depth_sigmas * scene.grid.z_sigma_m(now.z, params_.disparity_sigma_px)) +
+                            square(params_.hand_lag * norm(step)) + square(params_.hand_cut_sigma_m * seen->hand.cut) +
+                            square(skew_sigma_m(scene, hand_)));
 }
 
-void Arm::update_elbow(const Prediction& predicted, const Observation& seen) {
+void Arm::update_elbow(const Scene& scene, const Prediction& predicted, const Observation& seen) {
   constexpr double kGain = 0.8, kStepGain = 0.5, kHiddenStep = 0.6, kLeastHiddenSigmaM = 0.04, kMostSigmaM = 1.5;
   constexpr double kLeastWithHand = -2, kLeastAlone = 0;
   if (!(seen.elbow.score > (seen.arm ? kLeastWithHand : kLeastAlone))) {
@@ -153,6 +160,7 @@ void Arm::update_elbow(const Prediction& predicted, const Observation& seen) {
   elbow_.confidence = confidence_of(seen.elbow.score);
   const double cut = seen.arm ? seen.arm->hand.cut : 0;
   elbow_.sigma_m = std::hypot(params_.elbow_sigma_m, seen.elbow.spread_m, params_.elbow_cut_sigma_m * cut);
+  elbow_.sigma_m = std::hypot(elbow_.sigma_m, skew_sigma_m(scene, elbow_));
 }
 
 void Arm::find_silhouette(const Grid& grid, std::span<const Vec3> rivals) {

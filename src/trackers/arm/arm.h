@@ -18,6 +18,7 @@ namespace duo::arm {
 struct Scene {
   const Grid& grid;
   const GrayLevels& gray;
+  double skew_s = 0;  // how much later the right picture was taken
 };
 
 struct TrackedJoint {
@@ -62,11 +63,12 @@ class Arm {
   // The method, frame by frame (arm.cpp).
   Prediction predict() const;
   Observation observe(const Scene& scene, const Prediction& predicted, std::span<const Vec3> rivals);
-  void update(const Grid& grid, const Prediction& predicted, const Observation& seen);
+  void update(const Scene& scene, const Prediction& predicted, const Observation& seen);
 
   void update_shoulder(const Grid& grid);
-  void update_hand(const Grid& grid, const Prediction& predicted, const std::optional<Candidate>& seen);
-  void update_elbow(const Prediction& predicted, const Observation& seen);
+  void update_hand(const Scene& scene, const Prediction& predicted, const std::optional<Candidate>& seen);
+  void update_elbow(const Scene& scene, const Prediction& predicted, const Observation& seen);
+  double skew_sigma_m(const Scene& scene, const TrackedJoint& joint) const;
 
   // Candidates for the hand (arm_candidates.cpp).
   std::optional<Candidate> best_candidate(const Scene& scene, const Prediction& predicted);

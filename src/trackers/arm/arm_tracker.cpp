@@ -74,10 +74,11 @@ const std::vector<ArmPose>& ArmTracker::track(const Frame& frame) {
     hands[n] = hand.p + hand.step;
     seen[n] = hand.seen();
   }
+  const double skew_s = static_cast<double>(frame.skew_ns) * 1e-9;
   for (std::size_t n = 0; n < arms_.size(); ++n) {
     const std::size_t other = 1 - n;
     const bool rival = arms_.size() == kMostArms && seen[other];
-    arms_[n].track({grid_, gray_}, rival ? std::span<const Vec3>(&hands[other], 1) : std::span<const Vec3>());
+    arms_[n].track({grid_, gray_, skew_s}, rival ? std::span<const Vec3>(&hands[other], 1) : std::span<const Vec3>());
   }
   publish();
   return poses_;
