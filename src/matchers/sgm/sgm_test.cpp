@@ -74,6 +74,9 @@ TEST(Sgm, EnginesAgree) {
       if (HasFailure()) return;
     }
   expect_engines_agree({33, 17}, 70, 3, true);
+  // Vectors that are all used, behind one that holds nothing.
+  for (const int paths : {3, 8})
+    for (const int max_disparity : {16, 32, 48, 96}) expect_engines_agree({70, 12}, max_disparity, paths, false);
   expect_engines_agree({1, 1}, 1, 8, true);
   expect_engines_agree({5, 12}, 3, 3, false);
 }

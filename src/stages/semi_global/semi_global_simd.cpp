@@ -74,6 +74,11 @@ HWY_INLINE Before before(const Sweep& sweep, const std::uint8_t* costs, const st
   return Before(costs, least, &sweep.p2[std::abs(gray - gray_before)], sweep.in.params.p1);
 }
 
+/// What a path begins with; the lane before the first one stays 255.
+void zero_cell(const Sweep& sweep, std::uint8_t* costs) {
+  std::memset(costs + sweep.first, 0, static_cast<std::size_t>(sweep.lanes - sweep.first));
+}
+
 /// A row on its way from left to right.
 template <bool kUp, bool kDiagonals>
 class Along {
@@ -97,7 +102,7 @@ class Along {
     stride_above_ = i > 0 ? s.stride : 0;
     gray_above_ = sweep.in.left.value[0].row(sweep.y_of(std::max(i - 1, 0)));
     before_ = row.along.row(0) + kGap;
-    std::memset(before_, 0, static_cast<std::size_t>(sweep.lanes));
+    zero_cell(sweep, before_);
     here_ = row.along.row(1) + kGap;
     if (kUp || sweep.in.params.upward) upward_ = s.upward.row(y);
   }
@@ -185,7 +190,7 @@ class Back {
         gray_(sweep.in.left.value[0].row(y)),
         before_(row.back.row(0) + kGap),
         here_(row.back.row(1) + kGap) {
-    std::memset(before_, 0, static_cast<std::size_t>(sweep.lanes));
+    zero_cell(sweep, before_);
     std::memset(row.best.row(0), 255, static_cast<std::size_t>(sweep.lanes + sweep.w));
   }
 
