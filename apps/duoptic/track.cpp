@@ -243,10 +243,11 @@ Command add(CLI::App& app) {
       ->capture_default_str();
   add_skew_option(*sub, options->skew_ms);
   options->sinks.add_to(*sub);
-  sub->add_option("--record", options->record,
-                  "Record the pairs on their way, also those that come too late to be tracked; track takes the file again")
-      ->type_name("FILE.mkv");
-  sub->add_flag("--force", options->force, "Replace an earlier recording of that name");
+  CLI::Option* record =
+      sub->add_option("--record", options->record,
+                      "Record the pairs on their way, also those that come too late to be tracked; track takes the file again")
+          ->type_name("FILE.mkv");
+  sub->add_flag("--force", options->force, "Replace an earlier recording of that name")->needs(record);
   sub->add_flag("--realtime", options->realtime,
                 "Take files at the pace of their capture times, as if live: late pairs are dropped");
   options->arm.add_to(*sub);

@@ -14,6 +14,7 @@ namespace duo {
 ///
 /// Exact    integers but for the share: the same bits on every machine; a pair whose skew is below 0.2 ms is left alone
 /// Reach    28 px a picture at 640x480, in proportion at other sizes; what goes faster is left where it is
+/// Memory   allocated at the first pair with a skew, and when the size changes
 /// Threads  one caller
 class InStep {
  public:

@@ -172,6 +172,7 @@ TEST_F(Cli, BadOptions) {
   expect_failure("depth -o out", kUsage, "LEFT");
   expect_failure("", kUsage, "subcommand");
   expect_failure("eval middlebury nowhere", kInput, "nowhere");
+  expect_failure("bench --instructions none", kInput, "\"none\": this build has");
 }
 
 TEST_F(Cli, BadRigs) {
