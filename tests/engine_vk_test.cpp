@@ -1,7 +1,6 @@
 // The Vulkan engine: the reference's bits, pairs in flight, only what is wanted sent back, little work for the CPU, and no
 // frame missing when the device or its memory goes.
 
-#include <ctime>
 #include <map>
 #include <utility>
 
@@ -9,28 +8,12 @@
 #include "engines/engines.h"
 #include "tests/agree_vk.h"
 #include "tests/allocations.h"
+#include "tests/watched_device.h"
 
 namespace duo {
 namespace {
 
-using test::must;
-
-/// A device of its own for each test, as an engine owns it and tests break it; validation is silent at the end.
-class OwnDevice {
- public:
-  explicit OwnDevice(vk::Validation validation = vk::Validation::kOn) : instance_(must(vk::Instance::open(validation))) {
-    device_ = must(vk::Device::make(instance_, must(instance_->devices()).front()));
-  }
-  ~OwnDevice() {
-    for (const std::string& message : instance_->messages()) ADD_FAILURE() << message;
-  }
-  vk::DeviceFunctions& calls() { return device_->calls(); }
-  std::unique_ptr<Engine> engine() { return make_vulkan_engine(std::move(device_), 2); }
-
- private:
-  std::shared_ptr<vk::Instance> instance_;
-  std::unique_ptr<vk::Device> device_;
-};
+using test::calls, test::must, test::OwnDevice, test::thread_ns, test::watch;
 
 SyntheticPair room(int seed = 2) {
   SyntheticSetup synthetic;
@@ -149,51 +132,6 @@ TEST(VulkanEngine, RefusesWhatCannotWorkAndStaysAsItWas) {
   EXPECT_FALSE(vulkan->prepare(wrong));
   const auto reference = prepared(make_ref_engine(), setup);
   expect_same_frame(run(*reference, scene.pair), run(*vulkan, scene.pair), "after a refused setup");
-}
-
-// What the driver does, by call: how often, and how long on this thread's clock.
-struct Calls {
-  int submits = 0, waits = 0, fail_submit_at = -1, fail_wait_at = -1, hang_at = -1, allocations_left = 1 << 30;
-  std::int64_t inside_ns = 0;
-  vk::DeviceFunctions real;
-} calls;
-
-std::int64_t thread_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
-}
-
-template <class F>
-auto inside(F&& f) {
-  const std::int64_t begin = thread_ns();
-  const auto result = f();
-  calls.inside_ns += thread_ns() - begin;
-  return result;
-}
-
-void watch(vk::DeviceFunctions& table) {
-  calls = {};
-  calls.real = table;
-  table.vkQueueSubmit = [](VkQueue queue, std::uint32_t count, const VkSubmitInfo* info, VkFence fence) {
-    if (calls.submits++ == calls.fail_submit_at) return VK_ERROR_DEVICE_LOST;
-    return inside([&] { return calls.real.vkQueueSubmit(queue, count, info, fence); });
-  };
-  // The work itself ends, as that of a lost device never would: what it uses may be freed.
-  table.vkWaitSemaphores = [](VkDevice device, const VkSemaphoreWaitInfo* info, std::uint64_t timeout_ns) {
-    if (calls.hang_at >= 0 && calls.waits >= calls.hang_at) return VK_TIMEOUT;  // its work goes on meanwhile
-    const VkResult r = inside([&] { return calls.real.vkWaitSemaphores(device, info, timeout_ns); });
-    return calls.waits++ == calls.fail_wait_at ? VK_ERROR_DEVICE_LOST : r;
-  };
-  table.vkGetSemaphoreCounterValue = [](VkDevice device, VkSemaphore semaphore, std::uint64_t* value) {
-    if (calls.hang_at >= 0 && calls.waits >= calls.hang_at) return *value = 0, VK_SUCCESS;
-    return inside([&] { return calls.real.vkGetSemaphoreCounterValue(device, semaphore, value); });
-  };
-  table.vkAllocateMemory = [](VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* with,
-                              VkDeviceMemory* out) {
-    if (calls.allocations_left-- <= 0) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    return calls.real.vkAllocateMemory(device, info, with, out);
-  };
 }
 
 TEST(VulkanEngine, LeavesTheCpuFree) {

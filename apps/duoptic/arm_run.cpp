@@ -49,9 +49,10 @@ Result<ArmRun> ArmRun::open(Input input, const ArmOptions& options, std::int64_t
                              input.names[0])};
   const Rig& rig = *setup.rig;
   setup.max_disparity = options.max_disparity > 0 ? options.max_disparity : disparity_at(kNearest_m, rig);
-  setup.wants.color = true;
-  DUO_TRY(run.engine_->prepare(setup));
   DUO_TRY_ASSIGN(run.tracker_, make_tracker("arm", options.tracker_preset));
+  setup.wants = run.tracker_->wants();
+  if (options.all_maps) setup.wants.color = setup.wants.views = setup.wants.disparity = true;
+  DUO_TRY(run.engine_->prepare(setup));
   const double frame_s = input.pairs->frame_s();
   DUO_TRY(run.tracker_->prepare({rig, *run.engine_->rectified(), frame_s}));
 

@@ -20,6 +20,7 @@ struct ArmOptions {
   EngineOptions engine;
   std::string tracker_preset = "default";
   int max_disparity = 0;  // 0: what something at kNearest_m has
+  bool all_maps = false;  // frames are drawn or scored, not only tracked
 
   void add_to(CLI::App& app);
 };

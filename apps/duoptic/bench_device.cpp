@@ -6,6 +6,7 @@
 
 #include "duoptic/devices.h"
 #include "duoptic/engine.h"
+#include "duoptic/tracker.h"
 #include "timing.h"
 
 namespace duo::app::bench {
@@ -36,26 +37,47 @@ std::size_t bytes_of(const Frame& f) {
          bytes_of(f.confidence) + bytes_of(f.depth_mm);
 }
 
-void add_stages(const Frame& frame, Run& run) {
+/// Of a frame, and of the look at it.
+void add_stages(const Frame& frame, std::span<const StageTime> look, Run& run) {
   double sum_ms = 0;
   std::size_t n = 0;
-  for (const StageTime& stage : frame.stages) {
-    if (stage.wall_ns == 0) break;
+  const auto add = [&](const StageTime& stage) {
+    if (stage.wall_ns == 0) return;
     const double ms = static_cast<double>(stage.wall_ns) * 1e-6;
     sum_ms += ms;
     if (n == run.stages.size()) run.stages.push_back({stage.stage, {}});
     run.stages[n++].ms.push_back(ms);
-  }
+  };
+  std::for_each(frame.stages.begin(), frame.stages.end(), add);
+  std::for_each(look.begin(), look.end(), add);
   run.gpu_ms.push_back(sum_ms);
 }
 
-/// As many pairs in flight as the engine takes.
-double frames_per_s(Engine& engine, const Pair& pair, int frames) {
+/// The thesis's tracker on three joints at one place: the first of the picture with colour and depth.
+///
+/// Errors  there is none
+Result<std::unique_ptr<Tracker>> tracker_on(const Frame& frame, const Engine& engine, const Rig& rig) {
+  constexpr int kStep_px = 24;
+  DUO_TRY_ASSIGN(std::unique_ptr<Tracker> tracker, make_tracker("arm", "thesis"));
+  DUO_TRY(tracker->prepare({rig, *engine.rectified()}));
+  Result<void> selected = Error{ErrorCode::kBadInput, "bench the tracker: the picture is too small"};
+  for (int y = rig.left.size.height / 3; y < rig.left.size.height; y += kStep_px)
+    for (int x = rig.left.size.width / 3; x < rig.left.size.width; x += kStep_px) {
+      const ArmSelection::Click click{static_cast<double>(x), static_cast<double>(y)};
+      selected = tracker->select(frame, {ArmSelection{{click, click, click}}});
+      if (selected) return tracker;
+    }
+  return selected.error();
+}
+
+/// As many pairs in flight as the engine takes; each frame is tracked where there is a tracker.
+double frames_per_s(Engine& engine, Tracker* tracker, const Pair& pair, int frames) {
   const double begin_ms = clock_ms(CLOCK_MONOTONIC);
   int submitted = 0;
   for (int collected = 0; collected < frames; ++collected) {
     for (; submitted < std::min(frames, collected + engine.in_flight()); ++submitted) engine.submit(pair);
-    engine.collect();
+    const Frame& frame = engine.collect();
+    if (tracker != nullptr) tracker->track(frame);
   }
   return frames * 1e3 / (clock_ms(CLOCK_MONOTONIC) - begin_ms);
 }
@@ -68,18 +90,24 @@ Result<Run> measure(Engine& engine, const Setup& setup, const Pair& pair, int re
     engine.submit(pair);
     return engine.collect();
   };
-  run.bytes_down = bytes_of(once());
+  const Frame& first = once();
+  run.bytes_down = bytes_of(first);
+  std::unique_ptr<Tracker> tracker;
+  if (setup.wants.observer) {
+    DUO_TRY_ASSIGN(tracker, tracker_on(first, engine, *setup.rig));
+  }
   run.bytes_up = 2 * bytes_of(pair.left.pixels);
   std::vector<double> cpu_ms;
   for (int i = 0; i < repeat; ++i) {
     const double wall = clock_ms(CLOCK_MONOTONIC), cpu = clock_ms(CLOCK_THREAD_CPUTIME_ID);
     const Frame& frame = once();
+    if (tracker != nullptr) tracker->track(frame);
     run.latency_ms.push_back(clock_ms(CLOCK_MONOTONIC) - wall);
     cpu_ms.push_back(clock_ms(CLOCK_THREAD_CPUTIME_ID) - cpu);
-    add_stages(frame, run);
+    add_stages(frame, tracker != nullptr ? tracker->stages() : std::span<const StageTime>(), run);
   }
   run.own_cpu_ms = median(cpu_ms);
-  run.frames_per_s = frames_per_s(engine, pair, repeat);
+  run.frames_per_s = frames_per_s(engine, tracker.get(), pair, repeat);
   if (const std::string event = engine.take_event(); !event.empty()) return Error{ErrorCode::kDeviceLost, event};
   return run;
 }
@@ -120,8 +148,13 @@ Result<nlohmann::json> device_table(const DeviceBench& what) {
         "{:>8} {:>8}  {}\n",
         size.width, size.height, what.max_disparity, engine->device(), speed.copy_gb_s, speed.up_gb_s, speed.down_gb_s, "",
         "latency", "GPU ms", "CPU ms", "frames/s", "MB up", "MB down", "stages, GPU ms");
+  struct Sent {
+    const char* name;
+    bool maps, observer;
+  };
   for (const auto& [matcher, preset] : what.choices)
-    for (const bool maps : {false, true}) {
+    for (const auto& [sent, maps, observer] :
+         {Sent{"", false, false}, {", tracked", false, true}, {", all maps", true, false}}) {
       Setup setup;
       setup.size = size;
       setup.rig = what.input->rig;
@@ -129,10 +162,10 @@ Result<nlohmann::json> device_table(const DeviceBench& what) {
       setup.preset = preset;
       setup.max_disparity = what.max_disparity;
       setup.fill = true;
-      setup.wants = {.color = maps, .depth = maps, .confidence = false, .views = maps, .disparity = maps};
+      setup.wants = {.color = maps, .depth = maps, .confidence = false, .views = maps, .disparity = maps, .observer = observer};
       setup.time_stages = true;
-      DUO_TRY_ASSIGN(const Run run, measure(*engine, setup, what.input->pair, what.repeat,
-                                            fmt::format("{} {}{}", matcher, preset, maps ? ", all maps" : "")));
+      DUO_TRY_ASSIGN(const Run run,
+                     measure(*engine, setup, what.input->pair, what.repeat, fmt::format("{} {}{}", matcher, preset, sent)));
       out["ours"].push_back(json_of(run));
       if (!what.json) print(run), std::fflush(stdout);
     }

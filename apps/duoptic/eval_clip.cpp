@@ -61,7 +61,9 @@ Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, con
   ClipScore score{truth.name, options.tracker_preset, truth.first_visible(), 0, 0, {}, {}, {}};
   const std::string left = (folder / "left.avi").string(), right = (folder / "right.avi").string();
   DUO_TRY_ASSIGN(Input input, open_input(left, right, rig, truth.skew_ms));
-  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(input), options, score.first));
+  ArmOptions arm = options;
+  arm.all_maps = true;
+  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(input), arm, score.first));
   const Rectified& rectified = run.header().rectified;
   std::unique_ptr<Sink> sink;
   if (!video.empty()) {

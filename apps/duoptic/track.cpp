@@ -200,7 +200,9 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
                                              .replace = options.force}));
     input.pairs = std::make_unique<Tap>(std::move(input.pairs), recording);
   }
-  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(input), options.arm, options.at_frame));
+  ArmOptions arm = options.arm;
+  arm.all_maps = !options.sinks.video.empty();
+  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(input), arm, options.at_frame));
   std::optional<Interrupt> interrupt;
   if (run.header().live) interrupt.emplace();
   Events events(app);

@@ -36,7 +36,9 @@ Picture copy_of(const Picture& picture) { return {picture.pixels.clone(), pictur
 Result<ArmRun> open_run(const PlayerOptions& options, Recording& recording) {
   DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, options.rig));
   input.pairs = std::make_unique<Tap>(std::move(input.pairs), recording);
-  return ArmRun::open(std::move(input), options.arm);
+  ArmOptions arm = options.arm;
+  arm.all_maps = true;
+  return ArmRun::open(std::move(input), arm);
 }
 
 double now_ms() { return clock_ms(CLOCK_MONOTONIC); }

@@ -30,6 +30,8 @@ struct Wants {
   bool confidence = false;  // how sure each disparity is; of the matcher sgm alone
   bool views = true;        // left and right, and where they are inside
   bool disparity = true;
+  bool observer =
+      false;  // what such a tracker needs: an observer of the device's frames; on the CPU views, disparity and colour
 };
 
 struct Setup {
@@ -45,8 +47,8 @@ struct Setup {
   bool time_stages = false;
 };
 
-/// Turns pairs into frames, in order: submit, collect, submit, … A device that is lost on the way is replaced by the CPU: no frame
-/// is missing, and take_event() tells.
+/// Turns pairs into frames, in order: submit, collect, submit, … A device that is lost on the way is replaced by the CPU: no
+/// frame is missing, and take_event() tells.
 ///
 /// Errors   all that can fail is in prepare(); after a failed prepare() the engine is as it was
 /// Threads  one caller
@@ -72,8 +74,8 @@ class Engine {
 };
 
 /// Makes an engine by name: "ref" (plain loops: the definition), "simd" (fast, same bits), "vulkan" (the graphics card, same
-/// bits; "vulkan:0" or "vulkan:radeon" names the device by index or a part of its name), "auto" (the graphics card if it has all
-/// that is needed, else simd).
+/// bits; "vulkan:0" or "vulkan:radeon" names the device by index or a part of its name), "auto" (the graphics card if it has
+/// all that is needed, else simd).
 ///
 /// Errors  unknown name, with the known ones; no such device, with what there is
 Result<std::unique_ptr<Engine>> make_engine(std::string_view name, int threads);

@@ -47,6 +47,8 @@ struct StageTime {
   std::int64_t cpu_ns = 0;  // of the whole process
 };
 
+class Observer;  // core/observer.h
+
 /// All that is known of one instant; const once the engine has published it.
 ///
 /// Shape   every map H x W of the rectified pair; maps that were not wanted are empty
@@ -60,6 +62,7 @@ struct Frame {
   Disparity disparity;
   Image<std::uint8_t> confidence;      // 1 (doubtful) .. 255 (sure) where measured, else 0 (want: confidence)
   Image<std::uint16_t> depth_mm;       // z in the rig frame, 0 = none (want: depth; needs a rig)
+  Observer* observer = nullptr;        // looks at the frame on its device, while the frame lives (want: observer)
   std::array<StageTime, 24> stages{};  // when asked for; ends at the first with wall_ns 0
 };
 

@@ -4,9 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
+#include "duoptic/engine.h"
 #include "duoptic/frame.h"
 #include "duoptic/result.h"
 #include "duoptic/rig.h"
@@ -54,7 +56,7 @@ struct TrackerSetup {
   double frame_s = 1.0 / 30;
 };
 
-/// Follows the selected arms through frames that hold disparity and colour.
+/// Follows the selected arms through frames that have what it wants.
 ///
 /// Errors   all that can fail is in prepare() and select(); a failed call leaves the tracker as it was
 /// Threads  one caller
@@ -62,6 +64,8 @@ class Tracker {
  public:
   virtual ~Tracker() = default;
   virtual const char* name() const = 0;
+  /// What its frames must have.
+  virtual Wants wants() const = 0;
   virtual Result<void> prepare(const TrackerSetup& setup) = 0;
   /// Starts tracking one or two arms from clicks on this frame; forgets arms selected before.
   ///
@@ -70,6 +74,8 @@ class Tracker {
   /// The arms in this frame, in the order of select(); empty before it. Valid until the next call.
   virtual const std::vector<ArmPose>& track(const Frame& frame) = 0;
   virtual void reset() = 0;
+  /// What its last look took on the device, where the engine times stages; ends at the first with wall_ns 0.
+  virtual std::span<const StageTime> stages() const { return {}; }
 };
 
 /// Makes a tracker by name ("arm") and preset ("default", "thesis").

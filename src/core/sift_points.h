@@ -33,4 +33,12 @@ struct SiftPoints {
   SiftPoint& operator[](int i) { return points[static_cast<std::size_t>(i)]; }
 };
 
+/// Which seen point a stored one is.
+struct PointMatch {
+  static constexpr int kNone = -1;
+  std::int32_t seen = kNone;         // index
+  std::int32_t square_distance = 0;  // of the descriptors
+  friend bool operator==(const PointMatch&, const PointMatch&) = default;
+};
+
 }  // namespace duo

@@ -4,5 +4,5 @@ target_sources(duoptic PRIVATE ${dir}/prepared.cpp ${dir}/ref_engine.cpp ${dir}/
   ${dir}/vulkan_choice.cpp)
 target_compile_definitions(duoptic PRIVATE DUO_VULKAN=$<BOOL:${DUO_VULKAN}>)
 if(DUO_VULKAN)
-  target_sources(duoptic PRIVATE ${dir}/vulkan_engine.cpp ${dir}/vulkan_frames.cpp)
+  target_sources(duoptic PRIVATE ${dir}/vulkan_engine.cpp ${dir}/vulkan_frames.cpp ${dir}/vulkan_observers.cpp)
 endif()

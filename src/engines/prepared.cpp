@@ -48,6 +48,7 @@ Result<Prepared> prepare_setup(const Setup& setup) {
   const Denoise denoise = setup.denoise != Denoise::kAuto ? setup.denoise : (setup.rig ? kRawDenoise : Denoise::kNone);
   out.median = denoise == Denoise::kMedian || denoise == Denoise::kBoth;
   out.gaussian = denoise == Denoise::kGaussian || denoise == Denoise::kBoth;
+  out.color = setup.wants.color || setup.wants.observer;
 
   out.size = setup.size;
   if (setup.rig) {
@@ -80,7 +81,7 @@ Frame make_frame(const Prepared& prepared) {
     frame.left_inside = Image<std::uint8_t>(prepared.size);
     frame.right_inside = Image<std::uint8_t>(prepared.size);
   }
-  if (prepared.setup.wants.color) frame.color = Image<Rgb8>(prepared.size);
+  if (prepared.color) frame.color = Image<Rgb8>(prepared.size);
   if (prepared.setup.wants.confidence) frame.confidence = Image<std::uint8_t>(prepared.size);
   if (prepared.setup.wants.depth) frame.depth_mm = Image<std::uint16_t>(prepared.size);
   frame.disparity.d_q4 = Image<std::uint16_t>(prepared.size);

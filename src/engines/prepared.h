@@ -15,6 +15,7 @@ namespace duo {
 struct Prepared {
   Setup setup;
   bool median = false, gaussian = false;  // denoising, resolved
+  bool color = false;                     // wanted, or needed by who observes
   std::optional<Rectification> rectification;
   std::optional<Rectified> geometry;
   Size size;  // of the rectified pictures

@@ -67,7 +67,7 @@ class RefEngine final : public Engine {
     timer_.stage("fill");
     if (setup.wants.depth) ref::depth(disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
     timer_.stage("depth");
-    if (setup.wants.color) prepare_color(pair.left, maps, frame.color);
+    if (prepared_.color) prepare_color(pair.left, maps, frame.color);
     timer_.stage("color");
   }
 

@@ -71,7 +71,7 @@ class SimdEngine final : public Engine {
     timer_.stage("fill");
     if (setup.wants.depth) simd::depth(pool_, disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
     timer_.stage("depth");
-    if (setup.wants.color) prepare_color(pair.left, maps, frame.color);
+    if (prepared_.color) prepare_color(pair.left, maps, frame.color);
     timer_.stage("color");
   }
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <atomic>
+#include <mutex>
 #include <utility>
 
 #include "core/check.h"
@@ -18,13 +20,15 @@ class VulkanEngine final : public Engine {
 
   const char* name() const override { return cpu_ != nullptr ? cpu_->name() : "vulkan"; }
   std::string device() const override { return cpu_ != nullptr ? std::string() : device_name_; }
-  int in_flight() const override { return vk::Frames::kSlots; }
+  int in_flight() const override { return vk::Frames::kInFlight; }
   const std::optional<Rectified>& rectified() const override { return prepared_->geometry; }
   std::string take_event() override { return std::exchange(event_, {}); }
 
   Result<void> prepare(const Setup& setup) override {
     DUO_TRY_ASSIGN(Prepared checked, prepare_setup(setup));
     auto prepared = std::make_unique<Prepared>(std::move(checked));
+    const std::lock_guard lock(observing_);
+    unseen_ = false;
     work_.reset();  // first: it speaks of the old setup, and there need not be memory for both
     if (device_ != nullptr) {
       auto work = vk::Frames::make(*device_, *prepared);
@@ -37,16 +41,19 @@ class VulkanEngine final : public Engine {
     }
     prepared_ = std::move(prepared);
     first_ = count_ = 0;
+    slots_ = work_ != nullptr ? work_->slots() : vk::Frames::kInFlight;
     if (work_ == nullptr) return prepare_cpu();
     for (Frame& frame : frames_) frame = work_->make_frame();
+    if (work_->observers() != nullptr) clicked_ = make_frame(*prepared_);
     return {};
   }
 
   void submit(const Pair& pair) override {
-    DUO_CHECK(prepared_ != nullptr && count_ < vk::Frames::kSlots);
+    DUO_CHECK(prepared_ != nullptr && count_ < vk::Frames::kInFlight);
     DUO_CHECK(pair.left.pixels.size() == prepared_->setup.size && pair.right.pixels.size() == prepared_->setup.size);
-    const int slot = (first_ + count_++) % vk::Frames::kSlots;
+    const int slot = (first_ + count_++) % slots_;
     pairs_[static_cast<std::size_t>(slot)] = &pair;
+    if (unseen_) go_on_with_cpu(why_unseen_);
     if (work_ == nullptr) return;
     if (const auto started = work_->submit(slot, pair); !started) go_on_with_cpu(started.error());
   }
@@ -54,7 +61,7 @@ class VulkanEngine final : public Engine {
   const Frame& collect() override {
     DUO_CHECK(count_ > 0);
     const int slot = first_;
-    first_ = (first_ + 1) % vk::Frames::kSlots;
+    first_ = (first_ + 1) % slots_;
     --count_;
     const Pair& pair = *pairs_[static_cast<std::size_t>(slot)];
     if (work_ != nullptr) {
@@ -65,6 +72,7 @@ class VulkanEngine final : public Engine {
         frame.sequence = pair.sequence;
         frame.t_ns = pair.left.t_ns;
         frame.skew_ns = pair.right.t_ns - pair.left.t_ns;
+        if (work_->observers() != nullptr) frame.observer = &observers_[static_cast<std::size_t>(slot)];
         return frame;
       }
       go_on_with_cpu(done.error());
@@ -74,6 +82,38 @@ class VulkanEngine final : public Engine {
   }
 
  private:
+  /// Of the frame in one slot.
+  class SlotObserver final : public Observer {
+   public:
+    SlotObserver(VulkanEngine& engine, int slot) : engine_(engine), slot_(slot) {}
+    bool observe(const Expectation& expected, Observation& seen) override {
+      return engine_.look([&](vk::Observers& observers) { return observers.observe(slot_, expected, seen); }).has_value();
+    }
+    Result<const Frame*> maps() override {
+      Frame& frame = engine_.clicked_;
+      DUO_TRY(engine_.look([&](vk::Observers& observers) { return observers.fetch(slot_, frame); }));
+      return &frame;
+    }
+
+   private:
+    VulkanEngine& engine_;
+    const int slot_;
+  };
+
+  /// In the tracker's thread. What goes wrong is left to the engine's: only that one gives the device up.
+  Result<void> look(const auto& with) {
+    const std::lock_guard lock(observing_);
+    if (work_ == nullptr || unseen_)
+      return Error{ErrorCode::kDeviceLost, "look at a frame: its device is lost; take the next frame"};
+    auto looked = with(*work_->observers());
+    if (!looked) {
+      why_unseen_ = looked.error();
+      unseen_ = true;
+    }
+    return looked;
+  }
+
+  /// While nobody looks.
   void give_up(const Error& why) {
     event_ = fmt::format("{}; the CPU goes on in its place", why.what);
     work_.reset();
@@ -86,7 +126,9 @@ class VulkanEngine final : public Engine {
   }
 
   void go_on_with_cpu(const Error& why) {
+    const std::lock_guard lock(observing_);
     give_up(why);
+    unseen_ = false;
     DUO_CHECK(prepare_cpu());  // its setup has been checked
   }
 
@@ -99,8 +141,13 @@ class VulkanEngine final : public Engine {
   std::array<Frame, 2> frames_;       // the last one stays as it is while the next is made
   unsigned current_ = 0;
   std::array<const Pair*, vk::Frames::kSlots> pairs_{};  // in flight: count_ of them from first_
-  int first_ = 0, count_ = 0;
+  int first_ = 0, count_ = 0, slots_ = vk::Frames::kInFlight;
   std::string event_;
+  std::mutex observing_;              // held while someone looks, and while work_ changes
+  std::atomic<bool> unseen_ = false;  // looking failed: why_unseen_ says why, and stays as it is until this is taken back
+  Error why_unseen_;
+  Frame clicked_;  // what came down for a click
+  std::array<SlotObserver, vk::Frames::kSlots> observers_{{{*this, 0}, {*this, 1}, {*this, 2}, {*this, 3}}};
 };
 
 }  // namespace

@@ -3,42 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "core/check.h"
 #include "core/clock.h"
+#include "engines/vulkan_maps.h"
 #include "stages/fill/fill_params.h"
 
 namespace duo::vk {
 namespace {
 
 constexpr int kMostParts = 96;  // stages of all levels of a pyramid
-
-// Maps lie without gaps between their rows: they travel as they are.
-template <class T>
-BufferView<T> whole(const Buffer& buffer, Size size) {
-  return {buffer, {0, size.width}};
-}
-
-template <class T>
-Result<void> make_map(const Device& device, const char* name, Size size, Buffer& out, Memory memory = Memory::kDevice) {
-  const auto pixels = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
-  DUO_TRY_ASSIGN(out, Buffer::make(device, name, pixels * sizeof(T), memory));
-  return {};
-}
-
-template <class T>
-void pack(const Image<T>& src, const Buffer& dst) {
-  const std::size_t row = static_cast<std::size_t>(src.width()) * sizeof(T);
-  for (int y = 0; y < src.height(); ++y) std::memcpy(dst.mapped().data() + static_cast<std::size_t>(y) * row, src.row(y), row);
-}
-
-template <class T>
-void unpack(const Buffer& src, Image<T>& dst) {
-  if (src.bytes() == 0 || dst.empty()) return;
-  const std::size_t row = static_cast<std::size_t>(dst.width()) * sizeof(T);
-  for (int y = 0; y < dst.height(); ++y) std::memcpy(dst.row(y), src.mapped().data() + static_cast<std::size_t>(y) * row, row);
-}
 
 template <class T>
 Result<Buffer> sent(Device& device, const char* name, const Image<T>& image) {
@@ -63,6 +37,7 @@ Result<std::unique_ptr<Frames>> Frames::make(Device& device, const Prepared& pre
   std::unique_ptr<Frames> out(new Frames(device, prepared));
   DUO_TRY(out->make_kernels());
   DUO_TRY(out->make_maps());
+  out->slots_.resize(static_cast<std::size_t>(out->observers_ ? kSlots : kInFlight));
   for (Slot& slot : out->slots_) {
     DUO_TRY(out->make_slot(slot));
     DUO_TRY(out->record(slot));
@@ -103,12 +78,19 @@ Result<void> Frames::make_maps() {
   DUO_TRY(make_view(views_[1], "right", maps != nullptr ? &maps->right : nullptr));
   const Size size = prepared_.size;
   const Wants& wants = prepared_.setup.wants;
-  DUO_TRY(make_map<std::uint16_t>(device_, "disparity", size, d_q4_));
+  if (wants.observer && rectifies()) {
+    DUO_TRY_ASSIGN(Observers observers, Observers::make(device_, size, kSlots, prepared_.setup.time_stages));
+    observers_.emplace(std::move(observers));
+  } else {
+    if (rectifies()) DUO_TRY(make_map<std::uint8_t>(device_, "rectified left", size, maps_.left));
+    DUO_TRY(make_map<std::uint16_t>(device_, "disparity", size, maps_.d_q4));
+    if (prepared_.color && rectifies()) DUO_TRY(make_map<Rgb8>(device_, "color", size, maps_.color));
+  }
+  if (rectifies()) DUO_TRY(make_map<std::uint8_t>(device_, "rectified right", size, right_));
   DUO_TRY(make_map<std::uint8_t>(device_, "origin", size, origin_));
   if (prepared_.setup.fill) DUO_TRY(make_map<std::uint16_t>(device_, "unsmoothed disparity", size, unsmoothed_));
   if (wants.confidence) DUO_TRY(make_map<std::uint8_t>(device_, "confidence", size, confidence_));
   if (wants.depth) DUO_TRY(make_map<std::uint16_t>(device_, "depth", size, depth_mm_));
-  if (wants.color && rectifies()) DUO_TRY(make_map<Rgb8>(device_, "color", size, color_));
   return {};
 }
 
@@ -118,7 +100,6 @@ Result<void> Frames::make_view(ViewMaps& view, const char* name, const ResampleM
   DUO_TRY(make_map<std::uint8_t>(device_, name, raw, view.gray));
   DUO_TRY(make_map<std::uint8_t>(device_, name, raw, view.denoised));
   if (map == nullptr) return {};
-  DUO_TRY(make_map<std::uint8_t>(device_, name, prepared_.size, view.rectified));
   DUO_TRY_ASSIGN(view.corner, sent(device_, name, map->corner));
   DUO_TRY_ASSIGN(view.fraction_q8, sent(device_, name, map->fraction_q8));
   DUO_TRY_ASSIGN(view.inside, sent(device_, name, inside_of(*map, raw)));
@@ -181,7 +162,7 @@ std::array<BufferView<std::uint8_t>, 2> Frames::record_views(Slot& slot) {
     });
   if (rectifies())
     each("rectify", [&](std::size_t i) {
-      const auto out = whole<std::uint8_t>(views_[i].rectified, prepared_.size);
+      const auto out = whole<std::uint8_t>(i == 0 ? maps_of(slot).left : right_, prepared_.size);
       rectify_.record(recorder, now[i], map_of(views_[i]), out, {}, prepared_.size);
       now[i] = out;
     });
@@ -205,7 +186,7 @@ void Frames::record_match(Recorder& recorder, BufferView<std::uint8_t> left, Buf
 void Frames::record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right) {
   Recorder& recorder = *slot.recorder;
   const Size size = prepared_.size;
-  const auto d_q4 = whole<std::uint16_t>(d_q4_, size);
+  const auto d_q4 = whole<std::uint16_t>(maps_of(slot).d_q4, size);
   const auto origin = whole<std::uint8_t>(origin_, size);
   const auto found = prepared_.setup.fill ? whole<std::uint16_t>(unsmoothed_, size) : d_q4;
   record_match(recorder, left, right, found);
@@ -225,11 +206,10 @@ void Frames::record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<
 
 void Frames::record_downloads(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right) {
   Recorder& recorder = *slot.recorder;
-  const Wants& wants = prepared_.setup.wants;
-  if (wants.color && rectifies()) {
-    const Size size = prepared_.size;
-    rectify_.record(recorder, whole<Rgb8>(views_[0].raw, prepared_.setup.size), map_of(views_[0]), whole<Rgb8>(color_, size),
-                    size);
+  const Observers::Maps& maps = maps_of(slot);
+  if (prepared_.color && rectifies()) {
+    rectify_.record(recorder, whole<Rgb8>(views_[0].raw, prepared_.setup.size), map_of(views_[0]),
+                    whole<Rgb8>(maps.color, prepared_.size), prepared_.size);
     recorder.stage("color");
   }
   const auto down = [&](const Buffer& from, const Buffer& to) {
@@ -237,11 +217,15 @@ void Frames::record_downloads(Slot& slot, BufferView<std::uint8_t> left, BufferV
   };
   down(*left.buffer, slot.down.left);
   down(*right.buffer, slot.down.right);
-  down(d_q4_, slot.down.d_q4);
+  down(maps.d_q4, slot.down.d_q4);
   down(origin_, slot.down.origin);
   down(confidence_, slot.down.confidence);
   down(depth_mm_, slot.down.depth_mm);
-  down(rectifies() ? color_ : views_[0].raw, slot.down.color);
+  down(rectifies() ? maps.color : views_[0].raw, slot.down.color);
+}
+
+const Observers::Maps& Frames::maps_of(const Slot& slot) const {
+  return observers_ ? observers_->maps(static_cast<int>(&slot - slots_.data())) : maps_;
 }
 
 Rectify::Map Frames::map_of(const ViewMaps& view) const {
@@ -258,9 +242,7 @@ Result<void> Frames::submit(int slot, const Pair& pair) {
 
 Result<void> Frames::collect(int slot, Frame& frame) {
   Slot& at = slots_[static_cast<std::size_t>(slot)];
-  // A card that has not finished by then never will; the software driver may be at work on large pictures.
-  constexpr std::int64_t kCardNs = 2'000'000'000;
-  DUO_TRY(device_.wait(at.ticket, device_.info().type == "software" ? kWaitNs : kCardNs));
+  DUO_TRY(device_.wait(at.ticket, device_.patience_ns()));
   unpack(at.down.left, frame.left);
   unpack(at.down.right, frame.right);
   unpack(at.down.d_q4, frame.disparity.d_q4);
@@ -280,22 +262,12 @@ Frame Frames::make_frame() const {
   const Wants& wants = prepared_.setup.wants;
   if (!wants.views) frame.left = {}, frame.right = {}, frame.left_inside = {}, frame.right_inside = {};
   if (!wants.disparity) frame.disparity = {};
+  if (!wants.color) frame.color = {};
   if (wants.views && rectifies()) {
     frame.left_inside = inside_of(prepared_.rectification->left, prepared_.setup.size);
     frame.right_inside = inside_of(prepared_.rectification->right, prepared_.setup.size);
   }
   return frame;
-}
-
-std::size_t Frames::bytes_up() const { return slots_[0].raw[0].bytes() + slots_[0].raw[1].bytes(); }
-
-std::size_t Frames::bytes_down() const {
-  const auto& down = slots_[0].down;
-  std::size_t sum = 0;
-  for (const Buffer* buffer :
-       {&down.left, &down.right, &down.d_q4, &down.origin, &down.confidence, &down.depth_mm, &down.color})
-    sum += buffer->bytes();
-  return sum;
 }
 
 }  // namespace duo::vk

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "engines/prepared.h"
+#include "engines/vulkan_observers.h"
 #include "matchers/pyramid/pyramid_vk.h"
 #include "matchers/sgm/sgm_vk.h"
 #include "stages/depth/depth_vk.h"
@@ -21,18 +22,20 @@
 namespace duo::vk {
 
 /// Kernels, memory and recordings for the pairs of one setup. The recordings of the slots use the same maps, one after the
-/// other; what the CPU writes and reads is each slot's own.
+/// other; what the CPU writes and reads is each slot's own, and so is what is observed.
 ///
-/// Threads  one at a time
+/// Threads  one at a time; besides, one that observes
 class Frames {
  public:
-  static constexpr int kSlots = 2;
+  static constexpr int kInFlight = 2;
+  static constexpr int kSlots = kInFlight + 2;  // where frames are observed: two stay as they are while the next ones are made
 
   /// Errors  the device lacks memory, or the driver refuses a kernel
   static Result<std::unique_ptr<Frames>> make(Device& device, const Prepared& prepared);
   Frames(const Frames&) = delete;
   Frames& operator=(const Frames&) = delete;
 
+  int slots() const { return static_cast<int>(slots_.size()); }
   /// Starts work on a pair; its slot must have been collected.
   ///
   /// Errors  those of Recorder::submit()
@@ -41,16 +44,15 @@ class Frames {
   ///
   /// Errors  those of Device::wait(): what the frame holds then means nothing
   Result<void> collect(int slot, Frame& frame);
+  /// Looks at the frame of a slot from its collect() to the next submit(); null where that was not wanted.
+  Observers* observers() { return observers_ ? &*observers_ : nullptr; }
   /// A frame with memory for what is wanted, and with what is the same in all of them.
   Frame make_frame() const;
-  /// What a frame makes travel up and down.
-  std::size_t bytes_up() const;
-  std::size_t bytes_down() const;
 
  private:
   /// One camera's pictures on their way to what the matcher sees.
   struct ViewMaps {
-    Buffer raw, gray, denoised, rectified, inside, corner, fraction_q8;
+    Buffer raw, gray, denoised, inside, corner, fraction_q8;
   };
   struct Slot {
     std::array<Buffer, 2> raw;
@@ -68,6 +70,8 @@ class Frames {
   Result<void> make_view(ViewMaps& view, const char* name, const ResampleMap* map);
   Result<void> make_slot(Slot& slot);
   Result<void> record(Slot& slot);
+  /// Where the maps of a slot's frame go.
+  const Observers::Maps& maps_of(const Slot& slot) const;
   std::array<BufferView<std::uint8_t>, 2> record_views(Slot& slot);
   void record_match(Recorder& recorder, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right,
                     BufferView<std::uint16_t> d_q4) const;
@@ -87,8 +91,11 @@ class Frames {
   WeightedMedian weighted_median_;
   std::optional<Depth> depth_;
   std::array<ViewMaps, 2> views_;
-  Buffer d_q4_, unsmoothed_, origin_, confidence_, depth_mm_, color_;
-  std::array<Slot, kSlots> slots_;
+  Buffer right_;  // rectified
+  Buffer unsmoothed_, origin_, confidence_, depth_mm_;
+  Observers::Maps maps_;  // of all slots, where nobody observes
+  std::optional<Observers> observers_;
+  std::vector<Slot> slots_;
 };
 
 }  // namespace duo::vk

@@ -107,6 +107,7 @@ Device::~Device() {
 
 Result<Ticket> Device::submit(VkCommandBuffer commands) {
   // Not vkQueueSubmit2: with it the validation layer (1.3.239) waits in vain when it looks into kernels.
+  const std::lock_guard lock(submitting_);
   const Ticket ticket = last_ + 1;
   auto timeline = structure<VkTimelineSemaphoreSubmitInfo>(VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO);
   timeline.signalSemaphoreValueCount = 1;

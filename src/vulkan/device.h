@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "vulkan/instance.h"
@@ -21,7 +22,7 @@ inline constexpr std::int64_t kWaitNs = 20'000'000'000;  // longer than any soun
 
 /// Opened device. Buffers, kernels, recorders and timers keep a pointer to it and must go before it.
 ///
-/// Threads  submit: one at a time; wait: any
+/// Threads  any
 class Device {
  public:
   /// Errors  the device lacks something, or the driver refuses
@@ -38,6 +39,8 @@ class Device {
   /// Errors  not finished within `timeout_ns`, after which it is not waited for again; device lost
   Result<void> wait(Ticket ticket, std::int64_t timeout_ns = kWaitNs) const;
   bool finished(Ticket ticket) const;
+  /// A card that has not finished a frame's work by then never will; the software driver may be at work on large pictures.
+  std::int64_t patience_ns() const { return info().type == "software" ? kWaitNs : 2'000'000'000; }
   /// Whether a wait for its work ended without the work: it may still be writing, so that nothing of it can be destroyed.
   bool hung() const { return hung_; }
   /// Keeps what kernels were compiled to for the next start, if there is more of it than was found.
@@ -75,6 +78,7 @@ class Device {
   VkDevice handle_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
   VkSemaphore timeline_ = VK_NULL_HANDLE;  // counts finished tickets
+  std::mutex submitting_;
   std::atomic<Ticket> last_ = 0;
   DeviceFunctions fn_;
   VkPhysicalDeviceMemoryProperties memory_{};

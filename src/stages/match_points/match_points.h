@@ -20,13 +20,6 @@ struct PredictedPlace {
   float x_px = 0, y_px = 0;
 };
 
-struct PointMatch {
-  static constexpr int kNone = -1;
-  std::int32_t seen = kNone;         // index
-  std::int32_t square_distance = 0;  // of the descriptors
-  friend bool operator==(const PointMatch&, const PointMatch&) = default;
-};
-
 // matches[i] tells which seen point is stored point i.
 //
 // Candidates of i are the seen points within reach_px (Euclidean, the border belongs to it) of predicted[i], or all when

@@ -14,6 +14,7 @@ using arm::kMostArms;
 class ArmTracker final : public Tracker {
  public:
   const char* name() const override { return "arm"; }
+  Wants wants() const override { return {.color = true}; }
   Result<void> prepare(const TrackerSetup& setup) override;
   Result<void> select(const Frame& frame, const std::vector<ArmSelection>& selections) override;
   const std::vector<ArmPose>& track(const Frame& frame) override;

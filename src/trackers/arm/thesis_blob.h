@@ -1,23 +1,19 @@
 // A joint as the thesis sees it: a patch of one hue.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 
+#include "core/observer.h"
 #include "core/pool.h"
 #include "core/run_forest.h"
-#include "core/targets.h"
-#include "duoptic/frame.h"
-#include "trackers/arm/pinhole.h"
 
 namespace duo::arm {
 
-/// Where a blob is looked for, and what it looks like.
-struct Blob {
-  Vec2 at_px;            // of the rectified picture
-  std::uint8_t hue = 0;  // 256 = full circle
-};
+/// The square around a place in which a joint is looked for.
+Window joint_window(Size size, PlaceQ4 at);
+/// What fits this hue there.
+Target blob_target(std::uint8_t hue, const Window& window);
 
 /// The passes that all blobs share.
 ///
@@ -29,18 +25,14 @@ class BlobFinder {
 
   /// Converts the frame; before everything else.
   void look_at(Pool& pool, const Frame& frame);
-  /// The blob around a click.
+  /// The hue around a click, 256 = full circle.
   ///
   /// Errors  none where no pixel fits its own model: gray, or too dark
-  std::optional<Blob> learn(Pool& pool, Vec2 click_px);
-  /// Looks for up to kMaxTargets blobs in one pass; moves those found and adapts their hue. found[i] tells which.
-  void find(Pool& pool, std::span<Blob> blobs, std::array<bool, kMaxTargets>& found);
-
-  /// The square around a place in which things are looked for.
-  Window window_at(Vec2 at_px) const;
+  std::optional<std::uint8_t> learn(Pool& pool, Pixel click);
+  /// Sums over the region of each joint's colour that is nearest to it, all marked in one pass.
+  void find(Pool& pool, std::span<const ExpectedJoint> joints, std::span<AreaSums> colors);
 
  private:
-  Target target_of(const Blob& blob) const;
   Image<std::uint8_t> hue_, saturation_, value_, marks_, eroded_;
   RunForestScratch forest_;
 };

@@ -2,38 +2,32 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "core/observer.h"
 #include "core/pool.h"
-#include "core/sift_points.h"
 #include "stages/match_points/match_points.h"
 #include "stages/sift/sift.h"
-#include "trackers/arm/pinhole.h"
 
 namespace duo::arm {
 
-/// The points of one joint with their way to it.
-struct JointPoints {
-  SiftPoints points;
-  std::vector<Vec2> to_joint_px;
-};
-
 class PointFinder {
  public:
-  static constexpr int kCapacity = 256;  // points in a window; a textured one of 107 px gives about 100
   PointFinder() = default;
   explicit PointFinder(Size largest_window);
 
-  void learn(Pool& pool, const Image<std::uint8_t>& gray, const Window& window, Vec2 joint_px, JointPoints& out);
-  /// Where the points say that the joint is: the median over matches. None of fewer than three.
-  std::optional<Vec2> find(Pool& pool, const Image<std::uint8_t>& gray, const Window& window, const JointPoints& stored);
+  JointPoints learn(Pool& pool, const Image<std::uint8_t>& gray, const Window& window, PlaceQ4 joint);
+  /// Which of the stored points are seen in the window; seen() tells where.
+  std::span<const PointMatch> find(Pool& pool, const Image<std::uint8_t>& gray, const Window& window,
+                                   const JointPoints& stored);
+  const SiftPoints& seen() const { return seen_; }
 
  private:
   SiftParams params_;
   std::optional<SiftScratch> scratch_;
   SiftPoints seen_;
   std::vector<PointMatch> matches_;
-  std::vector<double> x_px_, y_px_;
 };
 
 }  // namespace duo::arm

@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/check.h"
+#include "stages/sums/sums.h"
+#include "trackers/arm/pinhole.h"
 #include "trackers/arm/raw_left.h"
-#include "trackers/arm/thesis_blob.h"
-#include "trackers/arm/thesis_points.h"
+#include "trackers/arm/thesis_observe.h"
 
 namespace duo {
 namespace {
@@ -16,30 +18,39 @@ namespace {
 constexpr double kSigmaM = 0.05, kSigmaGrowthMPerS = 0.9, kLostAfterS = 1;
 
 struct FollowedJoint {
-  arm::JointPoints points;
-  double z_m = 0;  // the last one read back
-  int unseen = 0;  // frames
+  PlaceQ4 at;            // where it was last
+  std::uint8_t hue = 0;  // 256 = full circle
+  double z_m = 0;        // the last one read back
+  int unseen = 0;        // frames
 };
+
+PlaceQ4 place_of(Vec2 at_px) {
+  return {static_cast<std::int32_t>(std::lround(16 * at_px.x)), static_cast<std::int32_t>(std::lround(16 * at_px.y))};
+}
 
 class ThesisTracker final : public Tracker {
  public:
   const char* name() const override { return "arm"; }
+  Wants wants() const override { return {.views = false, .disparity = false, .observer = true}; }
   Result<void> prepare(const TrackerSetup& setup) override;
   Result<void> select(const Frame& frame, const std::vector<ArmSelection>& selections) override;
   const std::vector<ArmPose>& track(const Frame& frame) override;
   void reset() override;
+  std::span<const StageTime> stages() const override { return seen_.stages; }
 
  private:
+  void expect();
+  bool observe(const Frame& frame);
   void publish();
-  double depth_m(const Frame& frame, Vec2 at_px) const;
+  double depth_m(std::uint32_t d_q4) const;
+  Result<FollowedJoint> learn(const Frame& frame, Vec2 click_px, std::string_view joint);
 
-  Pool pool_{1};
   std::optional<arm::RawLeft> view_;  // empty before prepare()
   double frame_s_ = 0;
-  arm::BlobFinder blob_finder_;
-  arm::PointFinder point_finder_;
-  std::vector<arm::Blob> blobs_;  // three an arm, in the order of Joint
-  std::vector<FollowedJoint> joints_;
+  std::optional<arm::MapObserver> map_observer_;  // likewise
+  std::vector<FollowedJoint> joints_;  // three an arm, in the order of Joint
+  Expectation expected_;
+  Observation seen_;
   std::vector<ArmPose> poses_;
 };
 
@@ -48,46 +59,52 @@ Result<void> ThesisTracker::prepare(const TrackerSetup& setup) {
   reset();
   view_.emplace(view);
   frame_s_ = setup.frame_s;
-  const Size size = setup.rectified.size;
-  blob_finder_ = arm::BlobFinder(size);
-  const Window window = blob_finder_.window_at({0, 0});
-  point_finder_ = arm::PointFinder({window.width, window.height});
+  map_observer_.emplace(setup.rectified.size);
   return {};
 }
 
-/// Depth at one pixel, as in the thesis; 0 = none.
-double ThesisTracker::depth_m(const Frame& frame, Vec2 at_px) const {
+/// 0 = none.
+double ThesisTracker::depth_m(std::uint32_t d_q4) const {
   const Rectified& g = view_->geometry();
-  const int x = static_cast<int>(std::lround(at_px.x)), y = static_cast<int>(std::lround(at_px.y));
-  if (x < 0 || y < 0 || x >= g.size.width || y >= g.size.height) return 0;
-  const std::uint16_t d = frame.disparity.d_q4.at(y, x);
-  return d == 0 || d == Disparity::kNone ? 0 : 16 * g.focal_px * g.baseline_m / d;
+  return d_q4 == 0 || d_q4 == Disparity::kNone ? 0 : 16 * g.focal_px * g.baseline_m / d_q4;
+}
+
+/// Of a click on maps that are looked at.
+Result<FollowedJoint> ThesisTracker::learn(const Frame& frame, Vec2 click_px, std::string_view joint) {
+  const auto refused = [&](const char* what, const char* then) {
+    return Error{ErrorCode::kBadInput, fmt::format("select the arm: {} at the {} click; {}", what, joint, then)};
+  };
+  FollowedJoint out{place_of(click_px)};
+  const Pixel p = out.at.pixel();
+  const auto hue = map_observer_->hue_at(p);
+  if (!hue) return refused("no colour", "this preset follows colours, so click on one");
+  out.hue = *hue;
+  const Image<std::uint16_t>& d_q4 = frame.disparity.d_q4;
+  if (p.x < d_q4.width() && p.y < d_q4.height() && p.x >= 0 && p.y >= 0) out.z_m = depth_m(d_q4.at(p.y, p.x));
+  if (!(out.z_m > 0)) return refused("no depth", "click on a textured part, or choose another frame");
+  return out;
 }
 
 Result<void> ThesisTracker::select(const Frame& frame, const std::vector<ArmSelection>& selections) {
   DUO_CHECK(view_.has_value());
-  DUO_TRY(view_->check(frame, selections.size()));
-  std::vector<arm::Blob> blobs;
+  const Frame* maps = &frame;
+  if (frame.observer != nullptr) {
+    DUO_TRY_ASSIGN(maps, frame.observer->maps());
+  }
+  DUO_TRY(view_->check(*maps, selections.size()));
   std::vector<FollowedJoint> joints;
-  blob_finder_.look_at(pool_, frame);
+  auto points = std::make_shared<std::vector<JointPoints>>();
+  map_observer_->look_at(*maps);
   for (const ArmSelection& selection : selections) {
     DUO_TRY_ASSIGN(const auto clicks, view_->rectified(selection));
     for (std::size_t i = 0; i < clicks.size(); ++i) {
-      const auto refused = [&](const char* what, const char* then) {
-        return Error{ErrorCode::kBadInput, fmt::format("select the arm: {} at the {} click; {}", what, kJointNames[i], then)};
-      };
-      const auto blob = blob_finder_.learn(pool_, clicks[i]);
-      if (!blob) return refused("no colour", "this preset follows colours, so click on one");
-      FollowedJoint joint;
-      joint.z_m = depth_m(frame, clicks[i]);
-      if (!(joint.z_m > 0)) return refused("no depth", "click on a textured part, or choose another frame");
-      point_finder_.learn(pool_, frame.left, blob_finder_.window_at(clicks[i]), clicks[i], joint.points);
-      blobs.push_back(*blob);
-      joints.push_back(std::move(joint));
+      DUO_TRY_ASSIGN(const FollowedJoint joint, learn(*maps, clicks[i], kJointNames[i]));
+      joints.push_back(joint);
+      points->push_back(map_observer_->points_around(joint.at));
     }
   }
-  blobs_ = std::move(blobs);
   joints_ = std::move(joints);
+  expected_.points = std::move(points);
   poses_.assign(selections.size(), {});
   publish();
   return {};
@@ -95,37 +112,48 @@ Result<void> ThesisTracker::select(const Frame& frame, const std::vector<ArmSele
 
 const std::vector<ArmPose>& ThesisTracker::track(const Frame& frame) {
   if (poses_.empty()) return poses_;
-  blob_finder_.look_at(pool_, frame);
-  std::array<Window, kMaxTargets> windows;
-  for (std::size_t i = 0; i < blobs_.size(); ++i) windows[i] = blob_finder_.window_at(blobs_[i].at_px);
-  std::array<bool, kMaxTargets> found{};
-  blob_finder_.find(pool_, blobs_, found);
-  for (std::size_t i = 0; i < blobs_.size(); ++i) {
-    arm::Blob& blob = blobs_[i];
-    const auto second = point_finder_.find(pool_, frame.left, windows[i], joints_[i].points);
-    if (second && found[i])
-      blob.at_px = {(blob.at_px.x + second->x) / 2, (blob.at_px.y + second->y) / 2};
-    else if (second)
-      blob.at_px = *second;
-    joints_[i].unseen = second || found[i] ? 0 : joints_[i].unseen + 1;
-    if (const double z = depth_m(frame, blob.at_px); z > 0) joints_[i].z_m = z;
+  expect();
+  const bool looked = observe(frame);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    FollowedJoint& joint = joints_[i];
+    const ObservedJoint seen = looked ? seen_.joints[i] : ObservedJoint{joint.at};
+    joint.at = seen.at;
+    joint.unseen = seen.seen_by != 0 ? 0 : joint.unseen + 1;
+    if ((seen.seen_by & kSeenByColor) != 0) joint.hue = mean_hue(seen_.colors[i]).value_or(joint.hue);
+    if (const double z = depth_m(seen.d_q4); z > 0) joint.z_m = z;
   }
   publish();
   return poses_;
 }
 
+void ThesisTracker::expect() {
+  expected_.count = static_cast<int>(joints_.size());
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const FollowedJoint& joint = joints_[i];
+    expected_.joints[i] = {arm::blob_target(joint.hue, arm::joint_window(view_->geometry().size, joint.at)), joint.at};
+  }
+}
+
+/// On the device where the frame lies there, else in its maps.
+bool ThesisTracker::observe(const Frame& frame) {
+  if (frame.observer != nullptr) return frame.observer->observe(expected_, seen_);
+  map_observer_->look_at(frame);
+  map_observer_->observe(expected_, seen_);
+  return true;
+}
+
 void ThesisTracker::reset() {
-  blobs_.clear();
   joints_.clear();
   poses_.clear();
 }
 
 void ThesisTracker::publish() {
   const auto camera = arm::Pinhole::of(view_->geometry());
-  for (std::size_t i = 0; i < blobs_.size(); ++i) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const FollowedJoint& joint = joints_[i];
     Keypoint& out = poses_[i / kArmJoints].joints[i % kArmJoints];
-    const double unseen_s = joints_[i].unseen * frame_s_;
-    out.p_in_rig_m = camera.point(blobs_[i].at_px, joints_[i].z_m);
+    const double unseen_s = joint.unseen * frame_s_;
+    out.p_in_rig_m = camera.point({joint.at.x / 16.0, joint.at.y / 16.0}, joint.z_m);
     out.sigma_m = kSigmaM + kSigmaGrowthMPerS * unseen_s;
     out.state = unseen_s > kLostAfterS ? JointState::kLost : unseen_s > 0 ? JointState::kInferred : JointState::kSeen;
     out.confidence = std::max(0.0, 1 - unseen_s / kLostAfterS);

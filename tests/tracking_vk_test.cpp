@@ -1,0 +1,185 @@
+// The thesis's tracker on frames that stay on the device: the CPU's joints, little traffic, and no joint lost with the device.
+
+#include <thread>
+
+#include "core/observer.h"
+#include "duoptic/synthetic.h"
+#include "duoptic/tracker.h"
+#include "tests/allocations.h"
+#include "tests/watched_device.h"
+
+namespace duo {
+namespace {
+
+using test::calls, test::must, test::OwnDevice, test::thread_ns, test::watch;
+
+SyntheticPair room() {
+  SyntheticSetup synthetic;
+  synthetic.size = {192, 144};
+  return render_synthetic(synthetic, 2);
+}
+
+duo::Setup setup_for(const SyntheticPair& scene) {
+  duo::Setup setup;
+  setup.size = scene.pair.left.pixels.size();
+  setup.rig = scene.rig;
+  setup.matcher = "pyramid";
+  setup.preset = "thesis";
+  setup.max_disparity = 32;
+  setup.wants = must(make_tracker("arm", "thesis"))->wants();
+  return setup;
+}
+
+/// An engine and the thesis's tracker behind it.
+struct Line {
+  std::unique_ptr<Engine> engine;
+  std::unique_ptr<Tracker> tracker = must(make_tracker("arm", "thesis"));
+
+  Line(std::unique_ptr<Engine> with, const duo::Setup& setup) : engine(std::move(with)) {
+    const auto ready = engine->prepare(setup);
+    EXPECT_TRUE(ready) << ready.error().what;
+    must(tracker->prepare({*setup.rig, *engine->rectified()}));
+  }
+  const Frame& frame(const Pair& pair) {
+    engine->submit(pair);
+    return engine->collect();
+  }
+};
+
+/// Three places of the room that have colour and depth.
+ArmSelection places(const SyntheticPair& scene) {
+  Line line(make_simd_engine(1), setup_for(scene));
+  const Frame& frame = line.frame(scene.pair);
+  ArmSelection out;
+  std::size_t found = 0;
+  for (int y = 40; y < 144 && found < out.clicks.size(); y += 30)
+    for (int x = 60; x < 192 && found < out.clicks.size(); x += 30) {
+      const ArmSelection::Click at{static_cast<double>(x), static_cast<double>(y)};
+      if (line.tracker->select(frame, {ArmSelection{{at, at, at}}})) out.clicks[found++] = at;
+    }
+  EXPECT_EQ(found, out.clicks.size());
+  return out;
+}
+
+void expect_same_joints(const ArmPose& want, const ArmPose& got, const std::string& who) {
+  for (std::size_t i = 0; i < kArmJoints; ++i) {
+    EXPECT_EQ(want.joints[i].state, got.joints[i].state) << who << ", " << kJointNames[i];
+    // Points may differ in their last bits.
+    EXPECT_LT(norm(want.joints[i].p_in_rig_m - got.joints[i].p_in_rig_m), 0.003) << who << ", " << kJointNames[i];
+  }
+}
+
+TEST(VulkanTracking, GivesTheCpusJoints) {
+  const SyntheticPair scene = room();
+  const ArmSelection clicks = places(scene);
+  OwnDevice device;
+  Line vulkan(device.engine(), setup_for(scene)), cpu(make_simd_engine(1), setup_for(scene));
+  const Frame& first = vulkan.frame(scene.pair);
+  ASSERT_NE(first.observer, nullptr);
+  EXPECT_TRUE(first.left.empty() && first.color.empty() && first.disparity.d_q4.empty()) << "it stays on the device";
+  must(vulkan.tracker->select(first, {clicks}));
+  must(cpu.tracker->select(cpu.frame(scene.pair), {clicks}));
+  for (int i = 0; i < 3; ++i) {
+    const ArmPose want = cpu.tracker->track(cpu.frame(scene.pair))[0];
+    expect_same_joints(want, vulkan.tracker->track(vulkan.frame(scene.pair))[0], "frame " + std::to_string(i));
+    EXPECT_EQ(want[Joint::kHand].state, JointState::kSeen) << "the scene itself";
+  }
+  EXPECT_EQ(vulkan.engine->take_event(), "");
+}
+
+// An older frame is looked at while two newer ones are in flight.
+TEST(VulkanTracking, LooksAtFramesThatStay) {
+  const SyntheticPair scene = room();
+  Pair dark = room().pair;
+  for (int y = 0; y < dark.left.pixels.height(); ++y)
+    for (int x = 0; x < dark.left.pixels.width(); ++x) dark.left.pixels.at(y, x) = {};
+  OwnDevice device;
+  Line vulkan(device.engine(), setup_for(scene));
+  const Frame& first = vulkan.frame(scene.pair);
+  must(vulkan.tracker->select(first, {places(scene)}));
+  vulkan.engine->submit(scene.pair);
+  vulkan.engine->submit(dark);
+  const Frame& second = vulkan.engine->collect();
+  vulkan.engine->submit(dark);
+  (void)vulkan.engine->collect();
+  vulkan.engine->submit(dark);
+  const ArmPose pose = vulkan.tracker->track(second)[0];
+  for (const Keypoint& joint : pose.joints) EXPECT_EQ(joint.state, JointState::kSeen);
+  const ArmPose none = vulkan.tracker->track(vulkan.engine->collect())[0];
+  for (const Keypoint& joint : none.joints) EXPECT_EQ(joint.state, JointState::kInferred);
+  vulkan.engine->collect();
+}
+
+TEST(VulkanTracking, LeavesTheCpuFree) {
+  const SyntheticPair scene = room();
+  const ArmSelection clicks = places(scene);
+  OwnDevice device(vk::Validation::kOff);  // the layer allocates
+  watch(device.calls());
+  Line vulkan(device.engine(), setup_for(scene));
+  must(vulkan.tracker->select(vulkan.frame(scene.pair), {clicks}));
+  vulkan.tracker->track(vulkan.frame(scene.pair));  // the stored points go up
+  std::int64_t least_ns = 1 << 30;
+  for (int i = 0; i < 4; ++i) {
+    const long allocations = test::allocations;
+    const int submits = calls.submits;
+    const std::int64_t begin_ns = thread_ns(), inside_ns = calls.inside_ns;
+    vulkan.tracker->track(vulkan.frame(scene.pair));
+    least_ns = std::min(least_ns, thread_ns() - begin_ns - (calls.inside_ns - inside_ns));
+    EXPECT_LE(calls.submits - submits, 2);
+    EXPECT_EQ(test::allocations - allocations, 0);
+  }
+#ifdef NDEBUG
+  EXPECT_LT(least_ns, 250'000);  // its pictures are a tenth of VGA's
+#endif
+}
+
+void expect_cpu_goes_on(void (*injure)(), const char* how) {
+  const SyntheticPair scene = room();
+  const ArmSelection clicks = places(scene);
+  OwnDevice device;
+  watch(device.calls());
+  Line vulkan(device.engine(), setup_for(scene)), cpu(make_simd_engine(1), setup_for(scene));
+  must(vulkan.tracker->select(vulkan.frame(scene.pair), {clicks}));
+  must(cpu.tracker->select(cpu.frame(scene.pair), {clicks}));
+  expect_same_joints(cpu.tracker->track(cpu.frame(scene.pair))[0], vulkan.tracker->track(vulkan.frame(scene.pair))[0], how);
+  const Frame& unseen = vulkan.frame(scene.pair);
+  injure();
+  for (const Keypoint& joint : vulkan.tracker->track(unseen)[0].joints) EXPECT_EQ(joint.state, JointState::kInferred) << how;
+  EXPECT_FALSE(unseen.observer->maps()) << how;
+  const Frame& on_cpu = vulkan.frame(scene.pair);
+  EXPECT_EQ(on_cpu.observer, nullptr);
+  expect_same_joints(cpu.tracker->track(cpu.frame(scene.pair))[0], vulkan.tracker->track(on_cpu)[0], how);
+  EXPECT_NE(vulkan.engine->take_event().find("the CPU goes on"), std::string::npos) << how;
+  EXPECT_STREQ(vulkan.engine->name(), "simd");
+  must(vulkan.tracker->select(vulkan.frame(scene.pair), {clicks}));
+  EXPECT_EQ(vulkan.engine->take_event(), "") << "told once";
+}
+
+TEST(VulkanTracking, GoesOnWhenTheDeviceIsLostWhileItLooks) {
+  expect_cpu_goes_on([] { calls.fail_submit_at = calls.submits; }, "lost at a submit");
+  expect_cpu_goes_on([] { calls.fail_wait_at = calls.waits; }, "lost while waiting");
+  expect_cpu_goes_on([] { calls.hang_at = calls.waits; }, "hung");
+}
+
+// One thread makes frames, another looks at the one before, as in the tool.
+TEST(VulkanTracking, LooksWhileTheNextFrameIsMade) {
+  constexpr int kFrames = 8;
+  const SyntheticPair scene = room();
+  const ArmSelection clicks = places(scene);
+  OwnDevice device;
+  Line vulkan(device.engine(), setup_for(scene)), cpu(make_simd_engine(1), setup_for(scene));
+  must(cpu.tracker->select(cpu.frame(scene.pair), {clicks}));
+  const Frame* frame = &vulkan.frame(scene.pair);
+  must(vulkan.tracker->select(*frame, {clicks}));
+  for (int i = 0; i < kFrames; ++i) {
+    const Frame* next = nullptr;
+    std::jthread maker([&] { next = &vulkan.frame(scene.pair); });
+    const ArmPose got = vulkan.tracker->track(*frame)[0];
+    maker.join();
+    expect_same_joints(cpu.tracker->track(cpu.frame(scene.pair))[0], got, "frame " + std::to_string(i));
+    frame = next;
+  }
+}
+
+}  // namespace
+}  // namespace duo
