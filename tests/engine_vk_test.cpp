@@ -73,6 +73,11 @@ const Case kCases[] = {
      [](duo::Setup& s) { s.matcher = "sgm", s.preset = "paths8", s.fill = true, s.max_disparity = 21; }},
     {"pyramid", [](duo::Setup& s) { s.preset = "default"; }},
     {"thesis, taken as rectified", [](duo::Setup& s) { s.rig.reset(), s.wants.depth = false; }},
+    {"thesis, rows put right",
+     [](duo::Setup& s) {
+       s.rig.reset(), s.wants.depth = false;
+       s.rows = RowOffsets{s.size, {0.7, -0.4, 0.3, 0, 0.2, 0}, -1, 1.2, 100, 0.7, 0.1};
+     }},
 };
 
 TEST(VulkanEngine, AgreesWithTheReference) {

@@ -33,7 +33,7 @@ struct Options {
   int max_disparity = 128;
   double near_m = 0;  // 0: max_disparity says how far to search
   std::int64_t every = 1;
-  bool confidence = false, json = false, quiet = false;
+  bool confidence = false, keep_rows = false, json = false, quiet = false;
   EngineOptions engine;
 };
 
@@ -79,6 +79,15 @@ Result<Summary> process(PairSource& pairs, Engine& engine, const Options& option
   return summary;
 }
 
+nlohmann::json json_of(const std::optional<RowOffsets>& rows) {
+  if (!rows) return nullptr;
+  return {{"points", rows->points},
+          {"least_px", rows->least_px},
+          {"most_px", rows->most_px},
+          {"median_before_px", rows->before_px},
+          {"median_after_px", rows->after_px}};
+}
+
 void print(const Summary& summary, const Engine& engine, const Options& options, const Setup& setup) {
   const double frames = static_cast<double>(summary.ms.size()), ms = median(summary.ms);
   const double percent = frames > 0 ? 100 * summary.coverage_sum / frames : 0;
@@ -95,16 +104,30 @@ void print(const Summary& summary, const Engine& engine, const Options& options,
                                 {"max_disparity_px", setup.max_disparity},
                                 {"median_ms", ms},
                                 {"coverage_percent", percent},
+                                {"rows", json_of(setup.rows)},
                                 {"cut", summary.end == Next::kCut},
                                 {"warning", summary.warning},
                                 {"files", summary.files}};
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else if (!options.quiet) {
+    if (setup.rows)
+      fmt::print(
+          "rows disagreed by {:.1f} px at the median ({:.1f} to {:.1f}), by {} points: put right to {:.2f} px; --keep-rows "
+          "leaves them\n",
+          setup.rows->before_px, setup.rows->least_px, setup.rows->most_px, setup.rows->points, setup.rows->after_px);
     fmt::print(
         "{} frame{} of {}x{}, {:.1f} ms each ({}, {}, {} threads), {:.0f} % of the pixels have a disparity; written to {}\n",
         summary.ms.size(), summary.ms.size() == 1 ? "" : "s", setup.size.width, setup.size.height, ms, engine.name(),
         options.engine.preset, options.engine.threads, percent, options.folder);
   }
+}
+
+/// Of pairs that no rig rectifies: what their rows are off, where it matters. A live source cannot be read twice.
+Result<std::optional<RowOffsets>> rows_of(const Options& options, const Setup& setup, bool live) {
+  if (setup.rig || options.keep_rows || live) return std::optional<RowOffsets>();
+  DUO_TRY_ASSIGN(const Input again, open_input(options.left, options.right, {}));
+  DUO_TRY_ASSIGN(const RowOffsets rows, find_row_offsets(*again.pairs, options.engine.threads));
+  return rows.matter() ? std::optional(rows) : std::nullopt;
 }
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
@@ -125,6 +148,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
     setup.wants = {.color = true, .depth = true};
   }
   setup.wants.confidence = options.confidence;
+  DUO_TRY_ASSIGN(setup.rows, rows_of(options, setup, input.pairs->live()));
   DUO_TRY_ASSIGN(const auto engine, make_engine(options.engine.engine, options.engine.threads));
   DUO_TRY(engine->prepare(setup));
   DUO_TRY_ASSIGN(const Summary summary, process(*input.pairs, *engine, options, app));
@@ -161,6 +185,8 @@ Command add(CLI::App& app) {
   options->engine.add_to(*sub);
   sub->add_flag("--confidence", options->confidence,
                 "Write confidence.png, too: 1 doubtful .. 255 sure, 0 = unknown (matcher sgm)");
+  sub->add_flag("--keep-rows", options->keep_rows,
+                "Take the rows of a pair without a rig as they are; else they are put right where they disagree");
   sub->add_flag("--json", options->json, "Print the summary as JSON");
   sub->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
   sub->footer(kFooter);

@@ -43,7 +43,7 @@ constexpr double kThesisMean = 32.5;
 struct Options {
   std::vector<std::string> folders;
   std::string output;
-  bool no_peers = false, perturb = false, json = false;
+  bool no_peers = false, perturb = false, keep_rows = false, json = false;
   EngineOptions engine;
 };
 
@@ -57,11 +57,15 @@ struct MethodScores {
   std::vector<SceneScore> scenes;
 };
 
-Result<Image<float>> match(const Scene& scene, const EngineOptions& options, double& ms) {
+Result<Image<float>> match(const Scene& scene, const EngineOptions& options, bool keep_rows, double& ms) {
   DUO_TRY_ASSIGN(const auto engine, make_engine(options.engine, options.threads));
   Setup setup = options.setup();
   setup.size = scene.pair.left.pixels.size();
   setup.max_disparity = scene.max_disparity;
+  if (!keep_rows) {
+    const RowOffsets rows = find_row_offsets(scene.pair, options.threads);
+    if (rows.matter()) setup.rows = rows;
+  }
   DUO_TRY(engine->prepare(setup));
   const Frame* frame = nullptr;
   const auto once = [&] {
@@ -174,10 +178,13 @@ struct Contest {
   std::vector<EngineOptions> ours;
   std::vector<Peer> peers;
   std::vector<std::string> names;
+  bool keep_rows = false;
 };
 
-Contest contest(const EngineOptions& options) {
+Contest contest(const Options& all) {
+  const EngineOptions& options = all.engine;
   Contest out;
+  out.keep_rows = all.keep_rows;
   for (const std::string& matcher : matcher_names()) {
     EngineOptions one = options;
     if (matcher != options.matcher) one.preset = "default", one.set.clear();
@@ -199,7 +206,7 @@ Result<std::vector<MethodScores>> score_contest(const Contest& contest, const st
     worse.regions = {scene.regions.all.clone(), scene.regions.nonocc.clone(), scene.regions.disc.clone()};
     for (std::size_t i = 0; i < contest.ours.size(); ++i) {
       double ms = 0;
-      DUO_TRY_ASSIGN(const Image<float> d_px, match(worse, contest.ours[i], ms));
+      DUO_TRY_ASSIGN(const Image<float> d_px, match(worse, contest.ours[i], contest.keep_rows, ms));
       out[i].scenes.push_back({scene.name, score(d_px, worse), ms});
     }
     for (std::size_t i = 0; i < contest.peers.size(); ++i)
@@ -215,7 +222,7 @@ Result<Exit> run_perturbed(const Options& options) {
     DUO_TRY_ASSIGN(Scene scene, load_scene(folder));
     scenes.push_back(std::move(scene));
   }
-  const Contest all = contest(options.engine);
+  const Contest all = contest(options);
   DUO_TRY_ASSIGN(const auto clean, score_contest(all, scenes, {.name = "as they are"}));
   nlohmann::json rows = nlohmann::json::array();
   if (!options.json) {
@@ -259,7 +266,7 @@ Result<Exit> run(const Options& options) {
   for (const fs::path& folder : folders) {
     DUO_TRY_ASSIGN(const Scene scene, load_scene(folder));
     double ms = 0;
-    DUO_TRY_ASSIGN(const Image<float> d_px, match(scene, options.engine, ms));
+    DUO_TRY_ASSIGN(const Image<float> d_px, match(scene, options.engine, options.keep_rows, ms));
     methods[0].scenes.push_back({scene.name, score(d_px, scene), ms});
     for (std::size_t i = 1; i < methods.size(); ++i)
       methods[i].scenes.push_back(score_peer(accuracy_peers()[i - 1], scene, options.engine.threads));
@@ -294,6 +301,7 @@ Command add(CLI::App& app) {
   options->engine.denoise = "none";
   middlebury->add_option("DIR", options->folders, "Scene, or folder of scenes")->required();
   options->engine.add_to(*middlebury);
+  middlebury->add_flag("--keep-rows", options->keep_rows, "Do not put rows right that disagree, as duoptic depth does");
   middlebury->add_flag("--no-peers", options->no_peers, "Do not run OpenCV's matchers");
   middlebury->add_flag("--perturb", options->perturb,
                        "What a gain of 0.8, noise and a row error of 0.5 px add, for each matcher and OpenCV's 3WAY");

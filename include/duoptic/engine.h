@@ -11,6 +11,7 @@
 #include "duoptic/frame.h"
 #include "duoptic/result.h"
 #include "duoptic/rig.h"
+#include "duoptic/row_offsets.h"
 
 namespace duo {
 
@@ -35,8 +36,9 @@ struct Wants {
 };
 
 struct Setup {
-  Size size;               // of each raw picture
-  std::optional<Rig> rig;  // none: the pair is taken as rectified
+  Size size;                       // of each raw picture
+  std::optional<Rig> rig;          // none: the pair is taken as rectified
+  std::optional<RowOffsets> rows;  // of such a pair: are taken off the right picture
   std::string matcher = "sgm";
   std::string preset = "default";
   std::vector<std::pair<std::string, double>> parameters;  // override the preset's, by name (see matcher_parameters)

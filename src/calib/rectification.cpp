@@ -78,24 +78,32 @@ std::pair<std::uint32_t, std::uint32_t> split(double at_px, int length) {
 
 ResampleMap make_map(const Rectified& geometry, const Mat3& rig_from_camera, const Lens& lens) {
   constexpr double kRounding_px = 1.0 / 512;
-  const auto [w, h] = lens.camera().size;
   ResampleMap map{Image<std::uint32_t>(geometry.size), Image<std::uint16_t>(geometry.size)};
   for (int y = 0; y < geometry.size.height; ++y)
     for (int x = 0; x < geometry.size.width; ++x) {
       const auto raw = raw_from_rectified(geometry, rig_from_camera, lens, {double(x), double(y)});
-      if (!raw || !lens.covers(*raw, kRounding_px)) {
+      if (raw && lens.covers(*raw, kRounding_px))
+        put_place(map, y, x, *raw, lens.camera().size);
+      else
         map.corner.at(y, x) = ResampleMap::kOutside;
-        continue;
-      }
-      const auto [x0, fx] = split(raw->x, w);
-      const auto [y0, fy] = split(raw->y, h);
-      map.corner.at(y, x) = x0 << 16 | y0;
-      map.fraction_q8.at(y, x) = static_cast<std::uint16_t>(fx << 8 | fy);
     }
   return map;
 }
 
 }  // namespace
+
+void put_place(ResampleMap& map, int y, int x, Vec2 raw_px, Size raw) {
+  constexpr double kRounding_px = 1.0 / 512;
+  const auto inside = [&](double at_px, int length) { return at_px >= -kRounding_px && at_px <= length - 1 + kRounding_px; };
+  if (!inside(raw_px.x, raw.width) || !inside(raw_px.y, raw.height)) {
+    map.corner.at(y, x) = ResampleMap::kOutside;
+    return;
+  }
+  const auto [x0, fx] = split(raw_px.x, raw.width);
+  const auto [y0, fy] = split(raw_px.y, raw.height);
+  map.corner.at(y, x) = x0 << 16 | y0;
+  map.fraction_q8.at(y, x) = static_cast<std::uint16_t>(fx << 8 | fy);
+}
 
 std::optional<Vec2> rectified_from_raw(const Rectified& geometry, const Mat3& rig_from_camera, const Lens& lens, Vec2 raw_px) {
   const auto ray = lens.ray_of(raw_px);

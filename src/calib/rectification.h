@@ -29,6 +29,9 @@ Result<Rectified> rectified_geometry(const Rig& rig, const std::string& name);
 /// The same with the maps that resample both raw pictures into it.
 Result<Rectification> make_rectification(const Rig& rig, const std::string& name);
 
+/// Makes pixel (y, x) of a map show a place of a raw picture of this size; outside of it, nothing.
+void put_place(ResampleMap& map, int y, int x, Vec2 raw_px, Size raw);
+
 /// The point in the rig frame (metres) that a rectified left pixel with disparity d > 0 shows.
 inline Vec3 point_of(const Rectified& geometry, double x_px, double y_px, double d_px) {
   const double z_m = geometry.focal_px * geometry.baseline_m / d_px;

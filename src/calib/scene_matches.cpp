@@ -119,6 +119,14 @@ Result<SceneMatches> match_scene(PairSource& pairs, int threads) {
   return scene;
 }
 
+SceneMatches match_pair(const Pair& pair, int threads) {
+  SceneMatches scene{pair.left.pixels.size(), 1, false, {}};
+  std::vector<Candidate> all;
+  Matcher(scene.size, threads).add(pair, all);
+  scene.matches = best_of_each_cell(std::move(all), scene.size);
+  return scene;
+}
+
 double covered_share(const std::vector<SceneMatch>& matches, Size size) {
   std::array<bool, kColumns * kRows> seen{};
   for (const SceneMatch& match : matches) seen[static_cast<std::size_t>(cell_of(match.left_px, size, kColumns, kRows))] = true;

@@ -27,6 +27,9 @@ struct SceneMatches {
 /// Errors  those of the stream
 Result<SceneMatches> match_scene(PairSource& pairs, int threads);
 
+/// The same of one pair.
+SceneMatches match_pair(const Pair& pair, int threads);
+
 /// The cell of a picture parted into columns and rows that a place lies in, row by row.
 int cell_of(Vec2 at_px, Size size, int columns, int rows);
 

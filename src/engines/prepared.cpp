@@ -1,5 +1,7 @@
 #include "engines/prepared.h"
 
+#include "calib/row_offsets.h"
+
 #include <fmt/format.h>
 
 namespace duo {
@@ -36,6 +38,11 @@ Result<Prepared> prepare_setup(const Setup& setup) {
     return bad(
         fmt::format("prepare the engine: max disparity {} is not in 1 .. {}; choose the disparity of the nearest thing in px",
                     setup.max_disparity, Engine::kMaxDisparity));
+  if (setup.rows && setup.rig)
+    return bad("prepare the engine: a rig and row offsets were given; a rig says where the rows are, so give one of them");
+  if (setup.rows && setup.rows->size != setup.size)
+    return bad(fmt::format("prepare the engine: the row offsets are of {}x{}, the pictures are {}x{}; find them again",
+                           setup.rows->size.width, setup.rows->size.height, setup.size.width, setup.size.height));
   if (setup.wants.depth && !setup.rig)
     return bad(
         "prepare the engine: depth in metres needs a rig (focal length and baseline); give one, or take disparity alone");
@@ -61,6 +68,8 @@ Result<Prepared> prepare_setup(const Setup& setup) {
     DUO_TRY_ASSIGN(out.rectification, make_rectification(rig, "rig"));
     out.geometry = out.rectification->geometry;
     out.size = out.geometry->size;
+  } else if (setup.rows) {
+    out.rectification = row_maps(*setup.rows);
   }
   return out;
 }

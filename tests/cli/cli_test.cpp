@@ -74,6 +74,22 @@ TEST_F(Cli, RectifiedPairLeavesDisparity) {
   EXPECT_EQ(std::distance(fs::directory_iterator(at("out")), fs::directory_iterator()), 2);
 }
 
+TEST_F(Cli, RowsThatDisagreeArePutRight) {
+  const auto depth = [&](const char* more) {
+    const Ended ended = run(std::string("depth left.png right.png --max-disparity 32 -o out --json ") + more);
+    EXPECT_EQ(ended.exit, 0) << ended.err;
+    return nlohmann::json::parse(ended.out, nullptr, false);
+  };
+  const auto right = depth(""), kept = depth("--keep-rows"), with_rig = depth("--rig rig.json");
+  ASSERT_TRUE(right["rows"].is_object()) << "raw pictures, as if they were rectified";
+  EXPECT_GT(right["rows"]["median_before_px"], 1.0);
+  EXPECT_LT(right["rows"]["median_after_px"], 0.3);
+  EXPECT_TRUE(kept["rows"].is_null());
+  EXPECT_TRUE(with_rig["rows"].is_null());
+  EXPECT_GT(right["coverage_percent"].get<double>(), 1.2 * kept["coverage_percent"].get<double>());
+  EXPECT_NE(run("depth left.png right.png --max-disparity 32 -o out").out.find("rows disagreed by"), std::string::npos);
+}
+
 TEST_F(Cli, RawPairWithRigLeavesDepthAndPoints) {
   const Ended ended = run("depth left.png right.png --rig rig.json --max-disparity 32 -o out/deep --json --threads 2");
   ASSERT_EQ(ended.exit, 0) << ended.err;

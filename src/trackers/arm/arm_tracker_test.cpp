@@ -47,7 +47,7 @@ TEST_F(BadInput, ClicksAreNamed) {
 TEST_F(BadInput, FrameAndArms) {
   EXPECT_SAYS(tracker_->select(frame_, {}).error().what, "0 arms");
   frame_.color = {};
-  EXPECT_SAYS(select({120, 100}, {150, 100}, {200, 100}), "wants.color");
+  EXPECT_SAYS(select({120, 100}, {150, 100}, {200, 100}), "what the tracker wants");
 }
 
 TEST_F(BadInput, FailedSelectKeepsTheArmsAndResetForgetsThem) {

@@ -54,8 +54,8 @@ Result<void> RawLeft::check(const Frame& frame, std::size_t arms) const {
     return refused(fmt::format("select the arm: {} arms were given; this tracker follows 1 or 2", arms));
   if (frame.color.size() != geometry_.size || frame.left.size() != geometry_.size)
     return refused(
-        "select the arm: the frame lacks the colour picture or has another size than prepared; set wants.color in the "
-        "engine's setup");
+        "select the arm: the frame lacks the colour picture or has another size than prepared; prepare the engine with what "
+        "the tracker wants");
   return {};
 }
 

@@ -1,0 +1,135 @@
+#include "calib/row_offsets.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace duo {
+namespace {
+
+constexpr int kTerms = 6;
+constexpr std::size_t kLeastPoints = 24;
+constexpr double kWorthIt_px = 0.15;  // a shift this small costs sharpness for nothing
+using Terms = Eigen::Matrix<double, kTerms, 1>;
+
+struct RowDifference {
+  Terms terms;
+  double px = 0;
+};
+
+Terms terms_at(double x_px, double y_px, Size size) {
+  const double u = 2 * x_px / (size.width - 1) - 1, v = 2 * y_px / (size.height - 1) - 1;
+  return Terms(1, u, v, u * u, u * v, v * v);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The differences that lie within `reach_px` of where they lie closest together: wrong matches lie anywhere.
+std::vector<RowDifference> densest(std::vector<RowDifference> all, double reach_px) {
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.px < b.px; });
+  std::size_t begin = 0, end = 0;
+  for (std::size_t i = 0, j = 0; j < all.size(); ++j) {
+    while (all[j].px - all[i].px > 2 * reach_px) ++i;
+    if (j + 1 - i > end - begin) begin = i, end = j + 1;
+  }
+  return {all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(end)};
+}
+
+std::vector<double> off_px(const std::vector<RowDifference>& all, const Terms& fit) {
+  std::vector<double> out;
+  for (const RowDifference& one : all) out.push_back(std::abs(one.px - one.terms.dot(fit)));
+  return out;
+}
+
+/// The scale of what a good match may be off: robust, but not below what matches reach.
+double scale_px(const std::vector<double>& off) { return std::max(1.5 * median(off), 0.1); }
+
+Terms fit_terms(const std::vector<RowDifference>& all) {
+  constexpr int kRounds = 12;
+  // How far a nudged or ill calibrated pair may go, px: anywhere; tilted or zoomed; bent.
+  const Terms prior_px(100, 6, 6, 2, 2, 2);
+  constexpr double kShared_px = 2;  // neighbours are wrong together: points count for less than their number
+  Terms fit = Terms::Zero();
+  fit[0] = median([&] {
+    std::vector<double> px;
+    for (const RowDifference& one : all) px.push_back(one.px);
+    return px;
+  }());
+  for (int round = 0; round < kRounds; ++round) {
+    const auto off = off_px(all, fit);
+    const double scale = scale_px(off), variance = scale * scale + kShared_px * kShared_px;
+    Eigen::Matrix<double, kTerms, kTerms> normal = prior_px.cwiseAbs2().cwiseInverse().asDiagonal();
+    Terms right = Terms::Zero();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double weight = 1 / (1 + off[i] * off[i] / (4 * scale * scale)) / variance;
+      normal += weight * all[i].terms * all[i].terms.transpose();
+      right += weight * all[i].px * all[i].terms;
+    }
+    fit = normal.ldlt().solve(right);
+  }
+  return fit;
+}
+
+}  // namespace
+
+double RowOffsets::at(double x_px, double y_px) const {
+  const double px = terms_at(x_px, y_px, size).dot(Terms::Map(terms_px.data()));
+  return std::clamp(px, least_px, most_px);
+}
+
+bool RowOffsets::matter() const {
+  return points >= static_cast<int>(kLeastPoints) && before_px >= kWorthIt_px && after_px < 0.75 * before_px;
+}
+
+RowOffsets fit_row_offsets(const SceneMatches& scene) {
+  RowOffsets out;
+  out.size = scene.size;
+  std::vector<RowDifference> all;
+  for (const SceneMatch& match : scene.matches)
+    all.push_back({terms_at(match.right_px.x, match.left_px.y, scene.size), match.right_px.y - match.left_px.y});
+  all = densest(std::move(all), std::max(3.0, 0.01 * scene.size.height));
+  if (all.size() < kLeastPoints) return out;
+  const Terms fit = fit_terms(all);
+  const auto off = off_px(all, fit);
+  const double farthest_px = 3 * scale_px(off);
+  std::vector<double> before, after, seen;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (off[i] > farthest_px) continue;
+    before.push_back(std::abs(all[i].px));
+    after.push_back(off[i]);
+    seen.push_back(all[i].terms.dot(fit));
+  }
+  std::copy_n(fit.data(), kTerms, out.terms_px.begin());
+  const auto [least, most] = std::minmax_element(seen.begin(), seen.end());
+  out.least_px = *least;
+  out.most_px = *most;
+  out.points = static_cast<int>(before.size());
+  out.before_px = median(before);
+  out.after_px = median(after);
+  return out;
+}
+
+Result<RowOffsets> find_row_offsets(PairSource& pairs, int threads) {
+  DUO_TRY_ASSIGN(const SceneMatches scene, match_scene(pairs, threads));
+  return fit_row_offsets(scene);
+}
+
+RowOffsets find_row_offsets(const Pair& pair, int threads) { return fit_row_offsets(match_pair(pair, threads)); }
+
+Rectification row_maps(const RowOffsets& rows) {
+  Rectification out;
+  const auto [w, h] = rows.size;
+  out.geometry.size = rows.size;
+  for (ResampleMap* map : {&out.left, &out.right}) {
+    *map = {Image<std::uint32_t>(rows.size), Image<std::uint16_t>(rows.size)};
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x) put_place(*map, y, x, {double(x), map == &out.left ? y : y + rows.at(x, y)}, rows.size);
+  }
+  return out;
+}
+
+}  // namespace duo

@@ -1,0 +1,15 @@
+// The fit behind find_row_offsets(), and what an engine makes of it.
+#pragma once
+
+#include "calib/rectification.h"
+#include "calib/scene_matches.h"
+#include "duoptic/row_offsets.h"
+
+namespace duo {
+
+RowOffsets fit_row_offsets(const SceneMatches& scene);
+
+/// Maps that leave the left picture as it is and take the offsets off the right one; no geometry.
+Rectification row_maps(const RowOffsets& rows);
+
+}  // namespace duo
