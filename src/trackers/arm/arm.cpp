@@ -89,18 +89,24 @@ Arm::Prediction Arm::predict() const {
   return out;
 }
 
+// A hand whose elbow nothing supports may be another part of the arm, whose hand is hidden or out of the picture: an elbow
+// anywhere else is weighed against it.
 Arm::Observation Arm::observe(const Scene& scene, const Prediction& predicted, std::span<const Vec3> rivals) {
+  constexpr double kDoubtful = -1, kLeastLead = 1.5, kBetter = 0.5;
   find_silhouette(scene.grid, rivals);
   Observation out;
   out.arm = best_candidate(scene, predicted);
   if (out.arm && !(out.arm->score > least_score(*out.arm))) out.arm.reset();
-  if (out.arm) {
-    out.elbow = out.arm->elbow;
-    return out;
-  }
-  constexpr double kGrowthMPerS = 0.3;
+  if (out.arm) out.elbow = out.arm->elbow;
+  if (out.arm && out.elbow.score > kDoubtful) return out;
+
+  constexpr double kGrowthMPerS = 0.3, kAnywhereM = 0.35;
   const ElbowFinder finder(scene.grid, silhouette_, lengths_, params_);
-  out.elbow = finder.alone(shoulder_.p, {predicted.elbow, params_.elbow_prior_m + kGrowthMPerS * seconds(elbow_.unseen)});
+  const ElbowSeen anywhere = finder.anywhere(shoulder_.p, {predicted.elbow, kAnywhereM});
+  if (out.arm && !(anywhere.score > std::max(0.0, out.elbow.score + kLeastLead))) return out;
+  out.arm.reset();
+  out.elbow = finder.near(shoulder_.p, {predicted.elbow, params_.elbow_prior_m + kGrowthMPerS * seconds(elbow_.unseen)});
+  if (anywhere.score > out.elbow.score + kBetter) out.elbow = anywhere;
   return out;
 }
 

@@ -140,6 +140,25 @@ TEST(ElbowFinder, FindsTheBentLimb) {
   EXPECT_LT(finder.between(shoulder, grid.camera.point({20, 60}, 1.02), {wrong, 0.2}, kBack).score, 0);  // nothing there
 }
 
+// The upper arm was raised while nothing held the elbow: a right angle away from where it hung.
+TEST(ElbowFinder, FindsAnElbowFarFromWhereItWas) {
+  Grid grid(geometry());
+  Silhouette silhouette(grid);
+  std::fill(grid.inside.begin(), grid.inside.end(), std::uint8_t{1});
+  for (int y = 36; y < 45; ++y) fill_row(grid, y, 30, 65, 1.0F, silhouette.front);
+  const Params params;
+  const Vec3 shoulder = grid.camera.point({30, 40}, 1.03), elbow = grid.camera.point({60, 40}, 1.03);
+  const Lengths lengths{norm(elbow - shoulder), 0.25};
+  const ElbowFinder finder(grid, silhouette, lengths, params);
+  const ElbowPrior hanging{shoulder + Vec3{0.02, lengths.upper_m, 0}, 0.35};
+  const ElbowSeen anywhere = finder.anywhere(shoulder, hanging);
+  expect_near(anywhere.p, elbow, 0.05);
+  EXPECT_GT(anywhere.score, 1);
+  EXPECT_LT(finder.near(shoulder, hanging).score, 0);
+  std::fill(silhouette.front.begin(), silhouette.front.end(), std::uint8_t{0});
+  EXPECT_LT(finder.anywhere(shoulder, hanging).score, 0) << "nothing there";
+}
+
 // Without depth the whole circle is equally likely.
 TEST(ElbowFinder, TheElbowOfAHangingArmIsBehindIt) {
   Grid grid(geometry());

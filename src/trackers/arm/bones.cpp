@@ -54,7 +54,7 @@ class Hypotheses {
   }
 
  private:
-  std::array<Hypothesis, 160> items_;
+  std::array<Hypothesis, 480> items_;
   std::size_t count_ = 0;
   double best_ = -1e9;
 };
@@ -147,17 +147,21 @@ ElbowSeen ElbowFinder::between(Vec3 shoulder, Vec3 hand, const ElbowPrior& prior
   return hypotheses.sum_up();
 }
 
-ElbowSeen ElbowFinder::alone(Vec3 shoulder, const ElbowPrior& prior) const {
-  constexpr double kEvidence = 4, kRingRad = 0.13;
-  constexpr int kRings = 6;
+ElbowSeen ElbowFinder::near(Vec3 shoulder, const ElbowPrior& prior) const { return on_cap(shoulder, prior, 0.13, 6); }
+
+ElbowSeen ElbowFinder::anywhere(Vec3 shoulder, const ElbowPrior& prior) const { return on_cap(shoulder, prior, 0.2, 12); }
+
+/// In rings `ring_rad` apart around the predicted direction.
+ElbowSeen ElbowFinder::on_cap(Vec3 shoulder, const ElbowPrior& prior, double ring_rad, int rings) const {
+  constexpr double kEvidence = 4;
   const Vec3 n = normalized(prior.p - shoulder);
   Vec3 e1, e2;
   across(n, e1, e2);
   Hypotheses hypotheses;
-  for (int ring = 0; ring <= kRings; ++ring) {
+  for (int ring = 0; ring <= rings; ++ring) {
     const int steps = std::max(1, 6 * ring);
     for (int k = 0; k < steps; ++k) {
-      const double tilt = ring * kRingRad, turn = 2 * std::numbers::pi * k / steps;
+      const double tilt = ring * ring_rad, turn = 2 * std::numbers::pi * k / steps;
       const Vec3 direction = std::cos(tilt) * n + std::sin(tilt) * (std::cos(turn) * e1 + std::sin(turn) * e2);
       const Vec3 elbow = shoulder + lengths_.upper_m * direction;
       hypotheses.add(elbow, prior_of(prior, elbow) + kEvidence * upper(shoulder, elbow, 6));

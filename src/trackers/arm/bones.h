@@ -43,10 +43,13 @@ class ElbowFinder {
       : grid_(grid), silhouette_(silhouette), lengths_(lengths), params_(params) {}
   /// On the circle between shoulder and hand; `back` is away from where the torso looks.
   ElbowSeen between(Vec3 shoulder, Vec3 hand, const ElbowPrior& prior, Vec3 back) const;
-  /// On a cap around the predicted direction, while the hand is hidden.
-  ElbowSeen alone(Vec3 shoulder, const ElbowPrior& prior) const;
+  /// Without a hand: within 45 degrees of the predicted direction.
+  ElbowSeen near(Vec3 shoulder, const ElbowPrior& prior) const;
+  /// Likewise, in any direction but close to the opposite one.
+  ElbowSeen anywhere(Vec3 shoulder, const ElbowPrior& prior) const;
 
  private:
+  ElbowSeen on_cap(Vec3 shoulder, const ElbowPrior& prior, double ring_rad, int rings) const;
   double upper(Vec3 shoulder, Vec3 elbow, int samples) const;
   double fore(Vec3 elbow, Vec3 hand) const;
   const Grid& grid_;
