@@ -114,8 +114,17 @@ void Arm::update(const Scene& scene, const Prediction& predicted, const Observat
   update_hand(scene, predicted, seen.arm);
   update_elbow(scene, predicted, seen);
   if (seen.arm) return;
+  if (elbow_.seen()) follow_hand_outside(scene.grid);
   const Vec3 fore = hand_.p - elbow_.p;  // a hidden hand stays within the forearm's reach
   hand_.p = elbow_.p + (std::min(lengths_.fore_m, norm(fore)) / std::max(1e-6, norm(fore))) * fore;
+}
+
+/// A hand that left the picture is where the rest of its forearm points.
+void Arm::follow_hand_outside(const Grid& grid) {
+  constexpr double kGain = 0.5;
+  const double sigma_m = params_.hand_prior_m + params_.hand_prior_growth_m_s * seconds(hand_.unseen);
+  if (const auto outside = ElbowFinder(grid, silhouette_, lengths_, params_).hand_outside(elbow_.p, {hand_.p, sigma_m}))
+    hand_.p = hand_.p + kGain * (*outside - hand_.p);
 }
 
 // A joint that moves along the baseline by v dt between the two pictures seems z v dt / b off in depth; the pictures were put

@@ -68,6 +68,7 @@ class Arm {
   void update_shoulder(const Grid& grid);
   void update_hand(const Scene& scene, const Prediction& predicted, const std::optional<Candidate>& seen);
   void update_elbow(const Scene& scene, const Prediction& predicted, const Observation& seen);
+  void follow_hand_outside(const Grid& grid);
   double skew_sigma_m(const Scene& scene, const TrackedJoint& joint) const;
 
   // Candidates for the hand (arm_candidates.cpp).

@@ -150,13 +150,33 @@ TEST(ElbowFinder, FindsAnElbowFarFromWhereItWas) {
   const Vec3 shoulder = grid.camera.point({30, 40}, 1.03), elbow = grid.camera.point({60, 40}, 1.03);
   const Lengths lengths{norm(elbow - shoulder), 0.25};
   const ElbowFinder finder(grid, silhouette, lengths, params);
-  const ElbowPrior hanging{shoulder + Vec3{0.02, lengths.upper_m, 0}, 0.35};
+  const JointPrior hanging{shoulder + Vec3{0.02, lengths.upper_m, 0}, 0.35};
   const ElbowSeen anywhere = finder.anywhere(shoulder, hanging);
   expect_near(anywhere.p, elbow, 0.05);
   EXPECT_GT(anywhere.score, 1);
   EXPECT_LT(finder.near(shoulder, hanging).score, 0);
   std::fill(silhouette.front.begin(), silhouette.front.end(), std::uint8_t{0});
   EXPECT_LT(finder.anywhere(shoulder, hanging).score, 0) << "nothing there";
+}
+
+// A forearm up to the picture's upper border, 25 of its 40 cm; the hand was last seen to the side of it.
+TEST(ElbowFinder, AForearmLeadsOutOfThePicture) {
+  Grid grid(geometry());
+  Silhouette silhouette(grid);
+  std::fill(grid.inside.begin(), grid.inside.end(), std::uint8_t{1});
+  for (int y = 0; y < 80; ++y) fill_row(grid, y, 0, 100, 3.0F, silhouette.front);  // a wall, which is no part of
+  std::fill(silhouette.front.begin(), silhouette.front.end(), std::uint8_t{0});    // what stands in front
+  for (int y = 0; y < 26; ++y) fill_row(grid, y, 47, 54, 1.0F, silhouette.front);
+  const Params params;
+  const Lengths lengths{0.3, 0.4};
+  const ElbowFinder finder(grid, silhouette, lengths, params);
+  const Vec3 elbow = grid.camera.point({50, 25}, 1.03);
+  const auto hand = finder.hand_outside(elbow, {elbow + Vec3{0.12, -0.36, 0}, 0.15});
+  ASSERT_TRUE(hand);
+  expect_near(*hand, elbow + Vec3{0, -0.4, 0}, 0.08);
+  // One that leads down stays in the picture.
+  for (int y = 26; y < 70; ++y) fill_row(grid, y, 47, 54, 1.0F, silhouette.front);
+  EXPECT_FALSE(finder.hand_outside(elbow, {elbow + Vec3{0.12, 0.36, 0}, 0.15}));
 }
 
 // Without depth the whole circle is equally likely.
@@ -167,7 +187,7 @@ TEST(ElbowFinder, TheElbowOfAHangingArmIsBehindIt) {
   const Lengths lengths{0.27, 0.25};
   const Params params;
   const ElbowFinder finder(grid, silhouette, lengths, params);
-  const ElbowPrior anywhere{0.5 * (shoulder + hand), 10};
+  const JointPrior anywhere{0.5 * (shoulder + hand), 10};
   EXPECT_GT(finder.between(shoulder, hand, anywhere, kBack).p.z, 1.02);
   EXPECT_LT(finder.between(shoulder, hand, anywhere, Vec3{0, 0, -1}).p.z, 0.98);
 }

@@ -25,6 +25,18 @@ double spot_evidence(const Grid& grid, const Silhouette& silhouette, Vec3 p, dou
   return silhouette.body[static_cast<std::size_t>(i)] ? std::min(evidence, kBody) : evidence;
 }
 
+/// How well a place inside a limb whose end is not seen agrees with the cell it falls on: it may be covered or outside, but
+/// nothing behind it may shine through.
+double way_out_evidence(const Grid& grid, const Silhouette& silhouette, Vec3 p, double radius_m) {
+  constexpr double kShinesThrough = -2, kSeen = 0.5, kSurfaceM = 0.06, kOtherSurfaceM = 0.12;
+  const int i = grid.cell_of(p);
+  if (i < 0 || !grid.inside[static_cast<std::size_t>(i)] || !grid.known(i)) return 0;
+  if (!silhouette.front[static_cast<std::size_t>(i)]) return kShinesThrough;
+  const double miss_m = grid.z(i) - (p.z - kSkin * radius_m);
+  if (miss_m > kOtherSurfaceM) return kShinesThrough;
+  return std::abs(miss_m) < kSurfaceM && !silhouette.body[static_cast<std::size_t>(i)] ? kSeen : 0;
+}
+
 struct Hypothesis {
   Vec3 p;
   double score;
@@ -59,7 +71,7 @@ class Hypotheses {
   double best_ = -1e9;
 };
 
-double prior_of(const ElbowPrior& prior, Vec3 p) {
+double prior_of(const JointPrior& prior, Vec3 p) {
   const Vec3 q = p - prior.p;
   return -0.5 * dot(q, q) / (prior.sigma_m * prior.sigma_m);
 }
@@ -78,6 +90,22 @@ void across(Vec3 n, Vec3& e1, Vec3& e2) {
   e1 = normalized(cross(n, std::abs(n.y) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}));
   e2 = cross(n, e1);
 }
+
+/// Calls f(direction) for unit vectors in rings around n.
+template <class F>
+void each_direction(Vec3 n, Cap cap, F&& f) {
+  Vec3 e1, e2;
+  across(n, e1, e2);
+  for (int ring = 0; ring <= cap.rings; ++ring) {
+    const int steps = std::max(1, 6 * ring);
+    for (int k = 0; k < steps; ++k) {
+      const double tilt = ring * cap.ring_rad, turn = 2 * std::numbers::pi * k / steps;
+      f(std::cos(tilt) * n + std::sin(tilt) * (std::cos(turn) * e1 + std::sin(turn) * e2));
+    }
+  }
+}
+
+constexpr Cap kAllDirections{0.2, 12};  // but those close to the opposite one
 
 }  // namespace
 
@@ -127,7 +155,7 @@ double ElbowFinder::fore(Vec3 elbow, Vec3 hand) const {
   return bone_evidence(grid_, silhouette_, {elbow, hand, params_.fore_radius_m, 0.12, 0.75, 5}, params_.disparity_sigma_px);
 }
 
-ElbowSeen ElbowFinder::between(Vec3 shoulder, Vec3 hand, const ElbowPrior& prior, Vec3 back) const {
+ElbowSeen ElbowFinder::between(Vec3 shoulder, Vec3 hand, const JointPrior& prior, Vec3 back) const {
   constexpr double kEvidence = 3;  // weight of a bone: its samples are not independent
   constexpr double kOtherLength = 0.15, kStretchPerM = 20;
   constexpr double kStepM = 0.02;  // along the circle
@@ -147,27 +175,38 @@ ElbowSeen ElbowFinder::between(Vec3 shoulder, Vec3 hand, const ElbowPrior& prior
   return hypotheses.sum_up();
 }
 
-ElbowSeen ElbowFinder::near(Vec3 shoulder, const ElbowPrior& prior) const { return on_cap(shoulder, prior, 0.13, 6); }
+ElbowSeen ElbowFinder::near(Vec3 shoulder, const JointPrior& prior) const { return in_directions(shoulder, prior, {0.13, 6}); }
 
-ElbowSeen ElbowFinder::anywhere(Vec3 shoulder, const ElbowPrior& prior) const { return on_cap(shoulder, prior, 0.2, 12); }
+ElbowSeen ElbowFinder::anywhere(Vec3 shoulder, const JointPrior& prior) const {
+  return in_directions(shoulder, prior, kAllDirections);
+}
 
-/// In rings `ring_rad` apart around the predicted direction.
-ElbowSeen ElbowFinder::on_cap(Vec3 shoulder, const ElbowPrior& prior, double ring_rad, int rings) const {
+ElbowSeen ElbowFinder::in_directions(Vec3 shoulder, const JointPrior& prior, Cap cap) const {
   constexpr double kEvidence = 4;
-  const Vec3 n = normalized(prior.p - shoulder);
-  Vec3 e1, e2;
-  across(n, e1, e2);
   Hypotheses hypotheses;
-  for (int ring = 0; ring <= rings; ++ring) {
-    const int steps = std::max(1, 6 * ring);
-    for (int k = 0; k < steps; ++k) {
-      const double tilt = ring * ring_rad, turn = 2 * std::numbers::pi * k / steps;
-      const Vec3 direction = std::cos(tilt) * n + std::sin(tilt) * (std::cos(turn) * e1 + std::sin(turn) * e2);
-      const Vec3 elbow = shoulder + lengths_.upper_m * direction;
-      hypotheses.add(elbow, prior_of(prior, elbow) + kEvidence * upper(shoulder, elbow, 6));
-    }
-  }
+  each_direction(normalized(prior.p - shoulder), cap, [&](Vec3 direction) {
+    const Vec3 elbow = shoulder + lengths_.upper_m * direction;
+    hypotheses.add(elbow, prior_of(prior, elbow) + kEvidence * upper(shoulder, elbow, 6));
+  });
   return hypotheses.sum_up();
+}
+
+std::optional<Vec3> ElbowFinder::hand_outside(Vec3 elbow, const JointPrior& prior) const {
+  constexpr double kEvidence = 4, kFrom = 0.15;  // nearer to the elbow all directions look alike
+  constexpr int kSamples = 7;
+  Hypotheses hypotheses;
+  each_direction(normalized(prior.p - elbow), kAllDirections, [&](Vec3 direction) {
+    double sum = 0;
+    for (int i = 0; i < kSamples; ++i) {
+      const double share = kFrom + (1 - kFrom) * i / (kSamples - 1);
+      sum += way_out_evidence(grid_, silhouette_, elbow + share * lengths_.fore_m * direction, params_.fore_radius_m);
+    }
+    const Vec3 hand = elbow + lengths_.fore_m * direction;
+    hypotheses.add(hand, prior_of(prior, hand) + kEvidence * sum / kSamples);
+  });
+  const Vec3 hand = hypotheses.sum_up().p;
+  if (grid_.cell_of(hand) >= 0) return {};
+  return hand;
 }
 
 }  // namespace duo::arm

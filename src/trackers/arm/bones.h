@@ -1,6 +1,8 @@
 // How well the frame supports a bone, and the elbows that both bone lengths allow.
 #pragma once
 
+#include <optional>
+
 #include "trackers/arm/chain.h"
 #include "trackers/arm/silhouette.h"
 
@@ -16,7 +18,7 @@ struct Bone {
 /// Between about -3 (the background shines through) and 1 (all of it is there at the right depth, and no wider than a limb).
 double bone_evidence(const Grid& grid, const Silhouette& silhouette, const Bone& bone, double disparity_sigma_px);
 
-struct ElbowPrior {
+struct JointPrior {
   Vec3 p;
   double sigma_m = 0;
 };
@@ -37,19 +39,27 @@ struct ElbowCircle {
   Vec3 at(double angle_rad) const;
 };
 
+/// Directions in rings `ring_rad` apart around one.
+struct Cap {
+  double ring_rad;
+  int rings;
+};
+
 class ElbowFinder {
  public:
   ElbowFinder(const Grid& grid, const Silhouette& silhouette, const Lengths& lengths, const Params& params)
       : grid_(grid), silhouette_(silhouette), lengths_(lengths), params_(params) {}
   /// On the circle between shoulder and hand; `back` is away from where the torso looks.
-  ElbowSeen between(Vec3 shoulder, Vec3 hand, const ElbowPrior& prior, Vec3 back) const;
+  ElbowSeen between(Vec3 shoulder, Vec3 hand, const JointPrior& prior, Vec3 back) const;
   /// Without a hand: within 45 degrees of the predicted direction.
-  ElbowSeen near(Vec3 shoulder, const ElbowPrior& prior) const;
+  ElbowSeen near(Vec3 shoulder, const JointPrior& prior) const;
   /// Likewise, in any direction but close to the opposite one.
-  ElbowSeen anywhere(Vec3 shoulder, const ElbowPrior& prior) const;
+  ElbowSeen anywhere(Vec3 shoulder, const JointPrior& prior) const;
+  /// Where what is seen of the forearm leads an unseen hand; none where that is inside the picture.
+  std::optional<Vec3> hand_outside(Vec3 elbow, const JointPrior& prior) const;
 
  private:
-  ElbowSeen on_cap(Vec3 shoulder, const ElbowPrior& prior, double ring_rad, int rings) const;
+  ElbowSeen in_directions(Vec3 shoulder, const JointPrior& prior, Cap cap) const;
   double upper(Vec3 shoulder, Vec3 elbow, int samples) const;
   double fore(Vec3 elbow, Vec3 hand) const;
   const Grid& grid_;

@@ -48,7 +48,7 @@ class ThesisTracker final : public Tracker {
   std::optional<arm::RawLeft> view_;  // empty before prepare()
   double frame_s_ = 0;
   std::optional<arm::MapObserver> map_observer_;  // likewise
-  std::vector<FollowedJoint> joints_;  // three an arm, in the order of Joint
+  std::vector<FollowedJoint> joints_;             // three an arm, in the order of Joint
   Expectation expected_;
   Observation seen_;
   std::vector<ArmPose> poses_;
