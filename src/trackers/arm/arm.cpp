@@ -106,7 +106,8 @@ Arm::Observation Arm::observe(const Scene& scene, const Prediction& predicted, s
   if (out.arm && !(anywhere.score > std::max(0.0, out.elbow.score + kLeastLead))) return out;
   out.arm.reset();
   out.elbow = finder.near(shoulder_.p, {predicted.elbow, params_.elbow_prior_m + kGrowthMPerS * seconds(elbow_.unseen)});
-  if (anywhere.score > out.elbow.score + kBetter) out.elbow = anywhere;
+  const double least_lead = out.elbow.score > 0 ? kLeastLead : kBetter;
+  if (anywhere.score > out.elbow.score + least_lead) out.elbow = anywhere;
   return out;
 }
 
