@@ -24,8 +24,8 @@ struct RowOffsets {
   bool matter() const;
 };
 
-/// From SIFT points of pairs spread evenly over a stream, of which some may be matched wrongly: a robust fit, held near a plain
-/// offset where points are few or lie together.
+/// From SIFT points of pairs spread over the first ten seconds of a stream, of which some may be matched wrongly: a robust fit,
+/// held near a plain offset where points are few or lie together.
 ///
 /// Errors  those of the stream; a scene that shows too little gives no points and no offsets
 /// Source  iteratively reweighted least squares with Cauchy's weights (Holland, Welsch, 1977) and Gaussian priors

@@ -114,7 +114,8 @@ RowOffsets fit_row_offsets(const SceneMatches& scene) {
 }
 
 Result<RowOffsets> find_row_offsets(PairSource& pairs, int threads) {
-  DUO_TRY_ASSIGN(const SceneMatches scene, match_scene(pairs, threads));
+  constexpr std::int64_t kTenSeconds = 300;  // who waits for the first frame waits for this
+  DUO_TRY_ASSIGN(const SceneMatches scene, match_scene(pairs, threads, kTenSeconds));
   return fit_row_offsets(scene);
 }
 

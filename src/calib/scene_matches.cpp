@@ -13,9 +13,7 @@
 namespace duo {
 namespace {
 
-constexpr int kPairs = 12;                // looked at in a stream
-constexpr std::int64_t kFarthest = 3600;  // two minutes; what comes later is not read
-constexpr std::int64_t kFarthestLive = 360;
+constexpr int kPairs = 12;              // looked at in a stream
 constexpr int kPatience = 20;           // times that a live source may say that nothing came; a second each at most
 constexpr int kPoints = 6000;           // a picture
 constexpr double kSmooth_px = 0.8;      // before patches are compared: noise, and what lies between pixels
@@ -94,8 +92,8 @@ int cell_of(Vec2 at_px, Size size, int columns, int rows) {
   return row * columns + column;
 }
 
-Result<SceneMatches> match_scene(PairSource& pairs, int threads) {
-  const std::int64_t farthest = pairs.live() ? kFarthestLive : kFarthest;
+Result<SceneMatches> match_scene(PairSource& pairs, int threads, std::int64_t farthest) {
+  if (pairs.live()) farthest /= 10;
   const std::int64_t count = pairs.count() > 0 ? std::min(pairs.count(), farthest) : farthest;
   const std::int64_t step = std::max<std::int64_t>(1, (count + kPairs - 1) / kPairs);
   SceneMatches scene;

@@ -21,11 +21,14 @@ struct SceneMatches {
   std::vector<SceneMatch> matches;
 };
 
+inline constexpr std::int64_t kTwoMinutes = 3600;  // pairs of a usual camera
+
 /// SIFT points of pairs spread evenly over a stream, matched by their descriptors alone: no place, row or rig is assumed, so
 /// that some matches are wrong. Where one part of the picture has far more of them than others, the best of its own are kept.
 ///
-/// Errors  those of the stream
-Result<SceneMatches> match_scene(PairSource& pairs, int threads);
+/// `farthest`: pairs that are read at most; a live source gives a tenth of them
+/// Errors      those of the stream
+Result<SceneMatches> match_scene(PairSource& pairs, int threads, std::int64_t farthest = kTwoMinutes);
 
 /// The same of one pair.
 SceneMatches match_pair(const Pair& pair, int threads);
