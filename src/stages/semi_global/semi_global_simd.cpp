@@ -24,6 +24,7 @@ HWY_BEFORE_NAMESPACE();
 namespace duo::HWY_NAMESPACE {
 
 constexpr int kBlock = 32;  // pixels between two looks at the row before
+constexpr int kSpins = 20;  // about a microsecond
 // The volume comes from main memory, and what fetches ahead by itself stops at each page.
 constexpr int kFetchAhead = 16, kLine = 64;  // pixels, bytes
 
@@ -35,6 +36,7 @@ struct Sweep {
   int thread, threads;
   bool up;
   int w, h, lanes, first;  // first: lane of the first vector that holds a disparity
+  int ahead;               // pixels that a row gets ahead of the next one: with all threads at work, half of what it could
   std::uint8_t p2[256];
   HWY_ALIGN_MAX std::uint8_t unused[kGap];  // 255 in the lanes of that vector which hold none
 
@@ -50,22 +52,28 @@ struct Sweep {
         lanes(s.lanes) {
     const int n = static_cast<int>(hn::Lanes(D()));
     first = (lanes - in.max_disparity) / n * n;
+    ahead = std::max(1, w / (2 * threads * kBlock)) * kBlock;
     for (int i = 0; i < 256; ++i) p2[i] = static_cast<std::uint8_t>(in.params.p2_at(i));
     for (int j = 0; j < kGap; ++j) unused[j] = first + j < lanes - in.max_disparity ? 255 : 0;
   }
 
   int y_of(int i) const { return up ? h - 1 - i : i; }
 
-  /// Spins for about a microsecond, which is what a row above on a running thread needs; then gives the core away.
+  /// Spins a little, then gives the core away. Who caught up lets the row above get ahead, so that not each block ends with
+  /// waiting, and is woken in such steps only: a call into the kernel takes longer than a block.
   void wait_for(int i, int pixels) const {
-    std::atomic<int>& done = s.done[static_cast<std::size_t>(i)];
-    for (int spins = 0, now = done.load(std::memory_order_acquire); now < pixels; now = done.load(std::memory_order_acquire))
-      if (++spins > 1000) done.wait(now, std::memory_order_acquire);
+    const std::atomic<int>& done = s.done[static_cast<std::size_t>(i)];
+    int now = done.load(std::memory_order_acquire);
+    if (now >= pixels) return;
+    for (int spins = 0; now < std::min(w, pixels + ahead); now = done.load(std::memory_order_acquire)) {
+      hwy::Pause();
+      if (++spins > kSpins) done.wait(now, std::memory_order_acquire);
+    }
   }
   void finished(int i, int pixels) const {
     std::atomic<int>& done = s.done[static_cast<std::size_t>(i)];
     done.store(pixels, std::memory_order_release);
-    if (threads > 1) done.notify_all();
+    if (threads > 1 && (pixels % ahead == 0 || pixels == w)) done.notify_all();
   }
 };
 
@@ -107,8 +115,8 @@ class Along {
     if (kUp || sweep.in.params.upward) upward_ = s.upward.row(y);
   }
 
-  /// Costs of a block of pixels. By themselves, as nothing here waits for the pixel before: mixed with the paths they take twice
-  /// the time.
+  /// Costs of a block of pixels. By themselves, as nothing here waits for the pixel before: mixed with the paths they take
+  /// twice the time.
   HWY_NOINLINE void costs(int begin, int end) {
     const D d;
     const int n = static_cast<int>(hn::Lanes(d)), first = sweep_.first, lanes = sweep_.lanes;
@@ -271,10 +279,9 @@ class Back {
     const auto below = hn::PromoteTo(d, hn::LoadU(d8, row_.beside.row(0) + x)),
                beyond = hn::PromoteTo(d, hn::LoadU(d8, row_.beside.row(1) + x));
     const auto higher = hn::Max(below, beyond), both = hn::Add(below, beyond), height = hn::Mul(higher, both);
-    const auto slope = hn::Add(
-        hn::ShiftLeft<7>(hn::Mul(hn::Sub(higher, hn::Min(below, beyond)), hn::Add(higher, both))), hn::ShiftRight<1>(height));
-    const auto t =
-        hn::ConvertTo(d, hn::Div(hn::ConvertTo(df, slope), hn::ConvertTo(df, hn::Max(height, constant(1)))));
+    const auto slope = hn::Add(hn::ShiftLeft<7>(hn::Mul(hn::Sub(higher, hn::Min(below, beyond)), hn::Add(higher, both))),
+                               hn::ShiftRight<1>(height));
+    const auto t = hn::ConvertTo(d, hn::Div(hn::ConvertTo(df, slope), hn::ConvertTo(df, hn::Max(height, constant(1)))));
     const auto size = hn::ShiftRight<14>(hn::Add(hn::Mul(t, hn::Sub(constant(768), t)), constant(8192)));
     const auto offset = hn::IfThenElse(hn::Lt(below, beyond), hn::Neg(size), size);
     const auto inner = hn::And(hn::Gt(disparity, constant(0)), hn::Lt(disparity, constant(sweep_.in.max_disparity - 1)));
