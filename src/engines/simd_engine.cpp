@@ -58,6 +58,9 @@ class SimdEngine final : public Engine {
 
     const auto* maps = prepared_.rectification ? &*prepared_.rectification : nullptr;
     prepare_view(pair.left, maps ? &maps->left : nullptr, frame.left, frame.left_inside);
+    // While the picture and its map are in the cache.
+    if (prepared_.color) prepare_color(pair.left, maps, frame.color);
+    timer_.stage("color");
     prepare_view(pair.right, maps ? &maps->right : nullptr, frame.right, frame.right_inside);
 
     Disparity& disparity = frame.disparity;
@@ -71,8 +74,6 @@ class SimdEngine final : public Engine {
     timer_.stage("fill");
     if (setup.wants.depth) simd::depth(pool_, disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
     timer_.stage("depth");
-    if (prepared_.color) prepare_color(pair.left, maps, frame.color);
-    timer_.stage("color");
   }
 
   const Frame& collect() override { return frames_[current_]; }

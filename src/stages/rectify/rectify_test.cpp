@@ -93,23 +93,29 @@ TEST(Rectify, SimdAgrees) {
 TEST(Rectify, ColorIsThreeGrays) {
   std::mt19937 rng(2);
   Pool two(2);
-  const Size raw{31, 17}, size{45, 13};
-  Image<std::uint8_t> channels[3] = {Image<std::uint8_t>(raw), Image<std::uint8_t>(raw), Image<std::uint8_t>(raw)};
-  Image<Rgb8> src(raw), dst(size);
-  for (auto& channel : channels) test::fill(channel.view(), test::Fill::kRandom, rng);
-  for (int y = 0; y < raw.height; ++y)
-    for (int x = 0; x < raw.width; ++x) src.at(y, x) = {channels[0].at(y, x), channels[1].at(y, x), channels[2].at(y, x)};
-  const ResampleMap map = random_map(raw, size, rng);
-  simd::rectify(two, src, map, dst);
-  for (int i = 0; i < 3; ++i) {
-    Image<std::uint8_t> want(size), inside(size);
-    ref::rectify(channels[i], map, want, inside);
-    for (int y = 0; y < size.height; ++y)
-      for (int x = 0; x < size.width; ++x) {
-        const Rgb8 got = dst.at(y, x);
-        ASSERT_EQ(want.at(y, x), (i == 0 ? got.r : i == 1 ? got.g : got.b)) << y << " " << x;
-      }
-  }
+  for (const Size raw : {Size{2, 2}, {3, 2}, {31, 17}})
+    for (const Size size : test::awkward_sizes()) {
+      const int stride = raw.width + 1;  // tight, as above
+      std::vector<Rgb8> pixels(static_cast<std::size_t>(stride * (raw.height - 1) + raw.width));
+      const View<Rgb8> src(pixels.data(), raw, stride);
+      Image<std::uint8_t> channels[3] = {Image<std::uint8_t>(raw), Image<std::uint8_t>(raw), Image<std::uint8_t>(raw)};
+      for (auto& channel : channels) test::fill(channel.view(), test::Fill::kRandom, rng);
+      for (int y = 0; y < raw.height; ++y)
+        for (int x = 0; x < raw.width; ++x) src.at(y, x) = {channels[0].at(y, x), channels[1].at(y, x), channels[2].at(y, x)};
+      const ResampleMap map = random_map(raw, size, rng);
+      Image<std::uint8_t> want[3] = {Image<std::uint8_t>(size), Image<std::uint8_t>(size), Image<std::uint8_t>(size)};
+      Image<std::uint8_t> inside(size);
+      for (int i = 0; i < 3; ++i) ref::rectify(channels[i], map, want[i], inside);
+      test::each_target([&](const std::string& target) {
+        test::Tight<Rgb8> got(size);
+        simd::rectify(two, src, map, got.view);
+        for (int y = 0; y < size.height; ++y)
+          for (int x = 0; x < size.width; ++x)
+            ASSERT_EQ((Rgb8{want[0].at(y, x), want[1].at(y, x), want[2].at(y, x)}), got.view.at(y, x))
+                << target << " " << y << " " << x;
+      });
+      if (HasFailure()) return;
+    }
 }
 
 // A shifted, slightly turned view, as real rigs have.
