@@ -1,7 +1,11 @@
 // The parts of the arm tracker on pictures small enough to know the answer.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <random>
+#include <vector>
 
 #include "tests/agree.h"
 #include "trackers/arm/bones.h"
@@ -58,6 +62,54 @@ TEST(Grid, CellHoldsMedianDisparityAndTrimmedColor) {
   EXPECT_EQ(grid.color_bin(cell), 31U);  // hue 0, saturation full
   EXPECT_FALSE(grid.known(grid.at(11, 20)));
   EXPECT_EQ(grid.cell_of(grid.point(cell)), cell);
+}
+
+/// Red, depth and cover of the cell (x, y), by sorting.
+void expect_cell(const Frame& frame, const Grid& grid, int x, int y) {
+  std::vector<int> red, d_q4;
+  bool covered = true;
+  for (int v = y * grid.step; v < (y + 1) * grid.step; ++v)
+    for (int u = x * grid.step; u < (x + 1) * grid.step; ++u) {
+      red.push_back(frame.color.at(v, u).r);
+      const int d = frame.disparity.d_q4.at(v, u);
+      if (d != 0 && d != Disparity::kNone) d_q4.push_back(d);
+      covered &= frame.left_inside.at(v, u) != 0;
+    }
+  std::sort(red.begin(), red.end());
+  std::sort(d_q4.begin(), d_q4.end());
+  const auto cut = red.size() < 4 ? 0 : 1;
+  const auto n = static_cast<float>(red.size() - 2 * static_cast<std::size_t>(cut));
+  const auto i = static_cast<std::size_t>(grid.at(x, y));
+  ASSERT_EQ(grid.color[i].r, static_cast<float>(std::accumulate(red.begin() + cut, red.end() - cut, 0)) / n);
+  ASSERT_EQ(grid.inside[i] != 0, covered);
+  const auto fb_q4 = static_cast<float>(grid.camera.focal_px * grid.step * grid.camera.baseline_m * 16);
+  const bool enough = !d_q4.empty() && d_q4.size() * 4 >= red.size();
+  ASSERT_EQ(grid.z_m[i], enough ? fb_q4 / static_cast<float>(d_q4[d_q4.size() / 2]) : 0) << grid.step << ": " << x << " " << y;
+}
+
+TEST(Grid, AgreesWithSortingAtEachStep) {
+  std::mt19937 rng(1);
+  for (const int width : {300, 673, 1021, 1361}) {
+    const Rectified r = geometry_of({width, 34}, 600);
+    Grid grid(r);
+    Frame frame;
+    frame.color = Image<Rgb8>(r.size);
+    frame.disparity.d_q4 = Image<std::uint16_t>(r.size);
+    frame.left_inside = Image<std::uint8_t>(r.size);
+    for (int y = 0; y < 34; ++y)
+      for (int x = 0; x < width; ++x) {
+        frame.color.at(y, x).r = static_cast<std::uint8_t>(rng());
+        const std::uint32_t unknown = rng() % 4;
+        frame.disparity.d_q4.at(y, x) = unknown == 0   ? 0
+                                        : unknown == 1 ? Disparity::kNone
+                                                       : static_cast<std::uint16_t>(1 + rng() % 4096);
+        frame.left_inside.at(y, x) = rng() % 8 != 0 ? 255 : 0;
+      }
+    grid.build(frame);
+    for (int y = 0; y < grid.height; ++y)
+      for (int x = 0; x < grid.width; ++x) expect_cell(frame, grid, x, y);
+    if (HasFailure()) return;
+  }
 }
 
 TEST(Regions, CutAtDepthStepsAndBridgeOneCell) {

@@ -12,27 +12,22 @@ namespace {
 
 constexpr int kMostStep = 16;
 
-/// The mean of n values (added up in `sum`) without the smallest and the largest, once that leaves something.
-struct Trimmed {
-  int sum = 0, least = 255, most = 0;
-  void add(int v) {
-    sum += v;
-    least = std::min(least, v);
-    most = std::max(most, v);
-  }
-  float mean(int n) const {
-    return n < 4 ? static_cast<float>(sum) / static_cast<float>(n)
-                 : static_cast<float>(sum - least - most) / static_cast<float>(n - 2);
-  }
-};
-
-/// The value at n / 2 in order. Four is what nearly every cell of a VGA picture has: the larger of the two in the middle.
+/// The value at n / 2 in order.
 std::uint16_t upper_median(std::uint16_t* v, int n) {
-  if (n == 4)
-    return std::max(std::max(std::min(v[0], v[1]), std::min(v[2], v[3])), std::min(std::max(v[0], v[1]), std::max(v[2], v[3])));
   std::nth_element(v, v + n / 2, v + n);
   return v[n / 2];
 }
+
+/// The same of those of four that are known, the others being 0; 0 of none. In order the zeros come first, so that it is the
+/// third of all where three or four are known, else the last.
+int upper_median_known(int a, int b, int c, int d) {
+  const int low_ab = std::min(a, b), high_ab = std::max(a, b), low_cd = std::min(c, d), high_cd = std::max(c, d);
+  const int third = std::max(std::max(low_ab, low_cd), std::min(high_ab, high_cd));
+  const int known = (a > 0) + (b > 0) + (c > 0) + (d > 0);
+  return known >= 3 ? third : std::max(high_ab, high_cd);
+}
+
+int known_or_zero(std::uint16_t d_q4) { return d_q4 == Disparity::kNone ? 0 : d_q4; }
 
 }  // namespace
 
@@ -45,6 +40,10 @@ Grid::Grid(const Rectified& rectified)
   z_m.resize(n);
   color.resize(n);
   inside.resize(n);
+  const auto bytes = static_cast<std::size_t>(width * step * 3);
+  sum_.resize(bytes);
+  least_.resize(bytes);
+  most_.resize(bytes);
   for (int i = 0; i < size(); ++i) {
     ray_x_.push_back(static_cast<float>((i % width - camera.cx_px) / camera.focal_px));
     ray_y_.push_back(static_cast<float>((i / width - camera.cy_px) / camera.focal_px));
@@ -72,32 +71,77 @@ void Grid::build(const Frame& frame) {
 /// kStep: the step as a constant, so that the inner loops unroll; 0 = any.
 template <int kStep>
 void Grid::build_row(const Frame& frame, int y) {
-  const int s = kStep > 0 ? kStep : step, pixels = s * s;
+  const int s = kStep > 0 ? kStep : step;
+  build_color<kStep>(frame.color, y);
   const float z_of_q4 = static_cast<float>(camera.focal_px * step * camera.baseline_m * 16);
-  std::array<std::uint16_t, kMostStep * kMostStep + 1> d_q4;  // the last is written and not counted
   for (int x = 0; x < width; ++x) {
-    int known = 0;
-    bool covered = true;
-    Trimmed r, g, b;
-    for (int v = y * s; v < (y + 1) * s; ++v) {
-      const std::uint16_t* d = frame.disparity.d_q4.row(v) + x * s;
-      const Rgb8* c = frame.color.row(v) + x * s;
-      for (int u = 0; u < s; ++u) {
-        d_q4[static_cast<std::size_t>(known)] = d[u];
-        known += d[u] != 0 && d[u] != Disparity::kNone;
-        r.add(c[u].r);
-        g.add(c[u].g);
-        b.add(c[u].b);
-      }
-      if (frame.left_inside.empty()) continue;
-      const std::uint8_t* in = frame.left_inside.row(v) + x * s;
-      for (int u = 0; u < s; ++u) covered &= in[u] != 0;
-    }
     const auto i = static_cast<std::size_t>(at(x, y));
-    inside[i] = covered;
-    color[i] = {r.mean(pixels), g.mean(pixels), b.mean(pixels)};
-    z_m[i] = known == 0 || known * 4 < pixels ? 0 : z_of_q4 / static_cast<float>(upper_median(d_q4.data(), known));
+    const int d_q4 = median_q4<kStep>(frame.disparity.d_q4, x * s, y * s);
+    z_m[i] = d_q4 == 0 ? 0 : z_of_q4 / static_cast<float>(d_q4);
+    inside[i] = 1;
   }
+  if (frame.left_inside.empty()) return;
+  for (int v = y * s; v < (y + 1) * s; ++v) {
+    const std::uint8_t* in = frame.left_inside.row(v);
+    std::uint8_t* out = &inside[static_cast<std::size_t>(at(0, y))];
+    for (int x = 0; x < width; ++x)
+      for (int u = 0; u < s; ++u) out[x] &= in[x * s + u] != 0;
+  }
+}
+
+/// Each channel's mean without its smallest and its largest value, once that leaves something. First down the columns, byte by
+/// byte as they lie in memory, then across them.
+template <int kStep>
+void Grid::build_color(View<const Rgb8> picture, int y) {
+  const int s = kStep > 0 ? kStep : step, pixels = s * s;
+  const std::size_t bytes = sum_.size();
+  std::uint16_t* sum = sum_.data();
+  std::uint8_t *least = least_.data(), *most = most_.data();
+  std::fill_n(sum, bytes, std::uint16_t{0});
+  std::fill_n(least, bytes, std::uint8_t{255});
+  std::fill_n(most, bytes, std::uint8_t{0});
+  for (int v = y * s; v < (y + 1) * s; ++v) {
+    const std::uint8_t* in = &picture.row(v)->r;
+    for (std::size_t i = 0; i < bytes; ++i) {
+      sum[i] = static_cast<std::uint16_t>(sum[i] + in[i]);  // of 16 rows at most
+      least[i] = std::min(least[i], in[i]);
+      most[i] = std::max(most[i], in[i]);
+    }
+  }
+  const auto mean = [&](std::size_t i) {
+    int all = 0;
+    std::uint8_t low = 255, high = 0;
+    for (int u = 0; u < s; ++u, i += 3) {
+      all += sum[i];
+      low = std::min(low, least[i]);
+      high = std::max(high, most[i]);
+    }
+    return pixels < 4 ? static_cast<float>(all) / static_cast<float>(pixels)
+                      : static_cast<float>(all - low - high) / static_cast<float>(pixels - 2);
+  };
+  for (int x = 0; x < width; ++x) {
+    const auto i = static_cast<std::size_t>(x * s * 3);
+    color[static_cast<std::size_t>(at(x, y))] = {mean(i), mean(i + 1), mean(i + 2)};
+  }
+}
+
+/// Of the cell's pixels, the first of them at (x, y); 0 where less than a quarter is known.
+template <int kStep>
+int Grid::median_q4(View<const std::uint16_t> d_q4, int x, int y) const {
+  if constexpr (kStep == 2) {  // what a VGA picture has
+    const std::uint16_t *upper = d_q4.row(y) + x, *lower = d_q4.row(y + 1) + x;
+    return upper_median_known(known_or_zero(upper[0]), known_or_zero(upper[1]), known_or_zero(lower[0]),
+                              known_or_zero(lower[1]));
+  }
+  const int s = kStep > 0 ? kStep : step;
+  std::array<std::uint16_t, kMostStep * kMostStep + 1> all;  // the last is written and not counted
+  int known = 0;
+  for (int v = y; v < y + s; ++v)
+    for (const std::uint16_t *d = d_q4.row(v) + x, *end = d + s; d != end; ++d) {
+      all[static_cast<std::size_t>(known)] = *d;
+      known += *d != 0 && *d != Disparity::kNone;
+    }
+  return known == 0 || known * 4 < s * s ? 0 : upper_median(all.data(), known);
 }
 
 // Hexcone model (Smith, 1978), as in the stage hsv.

@@ -54,7 +54,14 @@ struct Grid {
  private:
   template <int kStep>
   void build_row(const Frame& frame, int y);
+  template <int kStep>
+  void build_color(View<const Rgb8> picture, int y);
+  template <int kStep>
+  int median_q4(View<const std::uint16_t> d_q4, int x, int y) const;
+
   std::vector<float> ray_x_, ray_y_;  // slopes of the cells' rays
+  std::vector<std::uint16_t> sum_;    // of a row of cells, by byte of the picture's rows
+  std::vector<std::uint8_t> least_, most_;
 };
 
 /// Depth of the disc around a place of the grid, radius in cells: its median, or nearer where `nearness` is above one half.
