@@ -15,6 +15,7 @@ constexpr int kFineReach = 3;
 /// the picture continues by its edge pixels.
 template <int Side>
 struct Square {
+  static constexpr int kMostSide = Side;
   std::array<float, Side * Side> values;
   int side = 0;
 
@@ -53,25 +54,39 @@ bool cut(const GrayLevel& gray, Vec2 at_px, PatchPixels<R>& out) {
   return true;
 }
 
+/// Sums down the columns of a square that the parts of it beginning in one row share.
+template <int R, int Side>
+struct Columns {
+  std::array<float, Side> sums, squares;
+
+  Columns(const Square<Side>& square, int y) {
+    std::fill_n(sums.begin(), square.side, 0.0F);
+    std::fill_n(squares.begin(), square.side, 0.0F);
+    for (int j = 0; j < PatchPixels<R>::kSide; ++j) {
+      const float* s = square.values.data() + (y + j) * square.side;
+      for (int i = 0; i < square.side; ++i) {
+        sums[static_cast<std::size_t>(i)] += s[i];
+        squares[static_cast<std::size_t>(i)] += s[i] * s[i];
+      }
+    }
+  }
+};
+
 /// Correlation of the patch with the part of the square whose upper left corner is (x, y).
 template <int R, int Side>
-double correlation(const PatchPixels<R>& patch, const Square<Side>& square, int x, int y) {
+double correlation(const PatchPixels<R>& patch, const Square<Side>& square, const Columns<R, Side>& columns, int x, int y) {
   constexpr int kSide = PatchPixels<R>::kSide;
-  float dots[kSide] = {}, sums[kSide] = {}, squares_of[kSide] = {};  // by column: independent, so that they fill vectors
+  float dots[kSide] = {};  // by column: independent, so that they fill vectors
   for (int j = 0; j < kSide; ++j) {
     const float* s = square.values.data() + (y + j) * square.side + x;
     const float* p = patch.values.data() + j * kSide;
-    for (int i = 0; i < kSide; ++i) {
-      dots[i] += s[i] * p[i];
-      sums[i] += s[i];
-      squares_of[i] += s[i] * s[i];
-    }
+    for (int i = 0; i < kSide; ++i) dots[i] += s[i] * p[i];
   }
   float dot = 0, sum = 0, squares = 0;
   for (int i = 0; i < kSide; ++i) {
     dot += dots[i];
-    sum += sums[i];
-    squares += squares_of[i];
+    sum += columns.sums[static_cast<std::size_t>(x + i)];
+    squares += columns.squares[static_cast<std::size_t>(x + i)];
   }
   constexpr float n = kSide * kSide;
   const float spread = squares - sum * sum / n;
@@ -99,13 +114,15 @@ std::optional<PatchMatch> find_patch(const GrayLevels& gray, const Patch& patch,
   coarse.sample(gray.half, Pinhole::coarse(near_px, 2), scale, reach + patch.half.kRadius);
   double best = -2;
   Vec2 step;
-  for (int j = -reach; j <= reach; ++j)
+  for (int j = -reach; j <= reach; ++j) {
+    const Columns<4, decltype(coarse)::kMostSide> columns(coarse, j + reach);
     for (int i = -reach; i <= reach; ++i) {
-      const double score = correlation(patch.half, coarse, i + reach, j + reach) - kNear * std::sqrt(i * i + j * j);
+      const double score = correlation(patch.half, coarse, columns, i + reach, j + reach) - kNear * std::sqrt(i * i + j * j);
       if (score <= best) continue;
       best = score;
       step = {static_cast<double>(i), static_cast<double>(j)};
     }
+  }
   if (best < kLeastScore) return {};
 
   const Vec2 centre = {near_px.x + 2 * scale * step.x, near_px.y + 2 * scale * step.y};
@@ -114,12 +131,14 @@ std::optional<PatchMatch> find_patch(const GrayLevels& gray, const Patch& patch,
   constexpr int kScores = 2 * kFineReach + 1;
   std::array<std::array<double, kScores>, kScores> scores;
   std::size_t x = 1, y = 1;
-  for (std::size_t j = 0; j < kScores; ++j)
+  for (std::size_t j = 0; j < kScores; ++j) {
+    const Columns<6, decltype(fine)::kMostSide> columns(fine, static_cast<int>(j));
     for (std::size_t i = 0; i < kScores; ++i) {
-      scores[j][i] = correlation(patch.full, fine, static_cast<int>(i), static_cast<int>(j));
+      scores[j][i] = correlation(patch.full, fine, columns, static_cast<int>(i), static_cast<int>(j));
       const bool inner = i > 0 && j > 0 && i + 1 < kScores && j + 1 < kScores;
       if (inner && scores[j][i] > scores[y][x]) x = i, y = j;
     }
+  }
   if (scores[y][x] < kLeastScore) return {};
   const double dx = static_cast<double>(x) - kFineReach + peak(scores[y][x - 1], scores[y][x], scores[y][x + 1]);
   const double dy = static_cast<double>(y) - kFineReach + peak(scores[y - 1][x], scores[y][x], scores[y + 1][x]);
