@@ -1,6 +1,7 @@
-// One pass over each row: holes come in runs, and a run has one answer. Nothing here is worth vectors.
+// One pass over each row: holes come in runs, and a run has one answer. What was measured between them is skipped by memchr.
 
 #include <algorithm>
+#include <cstring>
 
 #include "core/check.h"
 #include "stages/fill/fill.h"
@@ -21,12 +22,11 @@ void fill(Pool& pool, View<std::uint16_t> d_q4, View<std::uint8_t> origin) {
     for (int y = y_begin; y < y_end; ++y) {
       std::uint16_t* d = d_q4.row(y);
       std::uint8_t* from = origin.row(y);
-      std::uint16_t before = Disparity::kNone;
       for (int x = 0; x < w;) {
-        if (from[x] != static_cast<std::uint8_t>(Origin::kNone)) {
-          before = d[x++];
-          continue;
-        }
+        const void* hole = std::memchr(from + x, static_cast<int>(Origin::kNone), static_cast<std::size_t>(w - x));
+        if (hole == nullptr) break;
+        x = static_cast<int>(static_cast<const std::uint8_t*>(hole) - from);
+        const std::uint16_t before = x > 0 ? d[x - 1] : Disparity::kNone;
         int end = x;
         while (end < w && from[end] == static_cast<std::uint8_t>(Origin::kNone)) ++end;
         const std::uint16_t value = std::min(before, end < w ? d[end] : Disparity::kNone);
