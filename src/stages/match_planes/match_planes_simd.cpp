@@ -79,17 +79,14 @@ HWY_EXPORT(interval_row);
 namespace simd {
 namespace {
 
-void outside_row(View<const std::uint8_t> inside, int y, std::uint8_t* out) {
+/// Loops that compilers make vectors of. `columns` is a row with a column to spare on either side.
+void outside_row(View<const std::uint8_t> inside, int y, std::uint8_t* columns, std::uint8_t* out) {
   const int w = inside.width(), h = inside.height();
   const std::uint8_t *up = inside.row(std::max(y - 1, 0)), *mid = inside.row(y), *down = inside.row(std::min(y + 1, h - 1));
-  const auto column = [&](int x) { return up[x] & mid[x] & down[x]; };
-  int before = column(0), here = before;
-  for (int x = 0; x < w; ++x) {
-    const int after = column(std::min(x + 1, w - 1));
-    out[x] = (before & here & after) != 0 ? 0 : 255;
-    before = here;
-    here = after;
-  }
+  for (int x = 0; x < w; ++x) columns[x] = up[x] & mid[x] & down[x];
+  columns[-1] = columns[0];
+  columns[w] = columns[w - 1];
+  for (int x = 0; x < w; ++x) out[x] = (columns[x - 1] & columns[x] & columns[x + 1]) != 0 ? 0 : 255;
 }
 
 }  // namespace
@@ -105,7 +102,7 @@ void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uin
       if (inside.empty())
         std::fill_n(row(out.outside, y), w, std::uint8_t{0});
       else
-        outside_row(inside, y, row(out.outside, y));
+        outside_row(inside, y, row(out.low[0], y), row(out.outside, y));  // low[0] has nothing in it yet
       out.continue_row(out.outside, y);
     }
   });
@@ -115,7 +112,8 @@ void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uin
       for (int i = 0; i < 5; ++i) rows[i] = row(out.value[0], y + i - 2);
       HWY_DYNAMIC_DISPATCH(census_row)(rows, w, row(out.census[0], y), row(out.census[1], y));
       HWY_DYNAMIC_DISPATCH(sobel_row)(rows[1], rows[2], rows[3], w, row(out.value[1], y), row(out.value[2], y));
-      for (const View<std::uint8_t> plane : {out.census[0], out.census[1], out.value[1], out.value[2]}) out.continue_row(plane, y);
+      for (const View<std::uint8_t> plane : {out.census[0], out.census[1], out.value[1], out.value[2]})
+        out.continue_row(plane, y);
     }
   });
   pool.rows(h, [&](int begin, int end) {
