@@ -86,39 +86,48 @@ class Window {
     const hn::Repartition<std::uint8_t, D> d8;
     const auto table = hn::LoadDup128(d8, WeightedMedian::kWeights.data());
     const auto centre = hn::And(hn::LoadU(d, centre_guide_ + x), hn::Set(d, 0xFF));
-    const auto limit = hn::Set(d, 64), entries = hn::Set(d, 15);
-    const auto no_high_byte = hn::Set(d, static_cast<std::int16_t>(0x8000));  // an index that looks up 0
-    const auto none_low = hn::Set(d, std::int16_t{0x7FFF}), none_high = hn::Set(d, static_cast<std::int16_t>(0x8000));
-    lowest = none_low, highest = none_high, sum = hn::Zero(d);
+    // Of a difference of 64 and more, and of all high bytes, an index that looks up 0.
+    const auto limit = hn::Set(d, 64), most = hn::Set(d, 16), to_high_bit = hn::Set(d, static_cast<std::int16_t>(0x8070)),
+               used_bits = hn::Set(d, static_cast<std::int16_t>(0x808F));
+    lowest = hn::Set(d, std::int16_t{0x7FFF}), highest = hn::Set(d, std::int16_t{-0x8000}), sum = hn::Zero(d);
     std::int16_t* out = weights_;
     for (int row = 0; row < rows_; ++row)
       for (int dx = -kRadius; dx <= kRadius; dx += kStep, out += kMaxLanes) {
         const auto difference = hn::Abs(hn::Sub(hn::LoadU(d, guide_[row] + x + dx), centre));
         const auto near = hn::Lt(difference, limit);
-        const auto index = hn::Or(hn::And(hn::ShiftRight<2>(difference), entries), no_high_byte);
-        const auto weight = hn::IfThenElseZero(near, hn::BitCast(d, hn::TableLookupBytesOr0(table, hn::BitCast(d8, index))));
+        const auto index = hn::And(hn::Add(hn::Min(hn::ShiftRight<2>(difference), most), to_high_bit), used_bits);
+        const auto weight = hn::BitCast(d, hn::TableLookupBytesOr0(table, hn::BitCast(d8, index)));
         hn::Store(weight, d, out);
         sum = hn::Add(sum, weight);
         const auto value = hn::LoadU(d, values_[row] + x + dx);
-        lowest = hn::Min(lowest, hn::IfThenElse(near, value, none_low));
-        highest = hn::Max(highest, hn::IfThenElse(near, value, none_high));
+        lowest = min_if(near, lowest, value);
+        highest = max_if(near, highest, value);
       }
   }
 
+#if HWY_TARGET <= HWY_AVX3  // an operation under a mask is one instruction
+  static HWY_INLINE V add_if(hn::Mask<D> m, V sum, V x) { return hn::IfThenElse(m, hn::Add(sum, x), sum); }
+  static HWY_INLINE V min_if(hn::Mask<D> m, V least, V x) { return hn::IfThenElse(m, hn::Min(least, x), least); }
+  static HWY_INLINE V max_if(hn::Mask<D> m, V most, V x) { return hn::IfThenElse(m, hn::Max(most, x), most); }
+#else
+  static HWY_INLINE V add_if(hn::Mask<D> m, V sum, V x) { return hn::Add(sum, hn::IfThenElseZero(m, x)); }
+  static HWY_INLINE V min_if(hn::Mask<D> m, V least, V x) { return hn::Min(least, hn::IfThenElse(m, x, least)); }
+  static HWY_INLINE V max_if(hn::Mask<D> m, V most, V x) { return hn::Max(most, hn::IfThenElse(m, x, most)); }
+#endif
+
   HWY_INLINE V weight_below(int x, V limit) const {
     const D d;
-    auto sum = hn::Zero(d);
+    auto sum = hn::Zero(d), left = sum, right = sum;  // three that do not wait for each other
     const std::int16_t* weight = weights_;
     for (int row = 0; row < rows_; ++row, weight += kSide * kMaxLanes) {
       const std::int16_t* values = values_[row] + x - kRadius;
-      const auto tap = [&](int i) HWY_ATTR {
-        return hn::IfThenElseZero(hn::Lt(hn::LoadU(d, values + i * kStep), limit), hn::Load(d, weight + i * kMaxLanes));
+      const auto add_tap = [&](V& to, int i) HWY_ATTR {
+        to = add_if(hn::Lt(hn::LoadU(d, values + i * kStep), limit), to, hn::Load(d, weight + i * kMaxLanes));
       };
-      // Three sums that do not wait for each other.
-      const auto left = hn::Add(hn::Add(tap(0), tap(1)), tap(2)), right = hn::Add(hn::Add(tap(4), tap(5)), tap(6));
-      sum = hn::Add(sum, hn::Add(hn::Add(left, right), tap(3)));
+      add_tap(sum, 0), add_tap(left, 1), add_tap(right, 2);
+      add_tap(sum, 3), add_tap(left, 4), add_tap(right, 5), add_tap(sum, 6);
     }
-    return sum;
+    return hn::Add(sum, hn::Add(left, right));
   }
 
   const simd::WeightedMedianScratch& s_;
