@@ -28,6 +28,8 @@ struct CheckLeftRight {
 };
 
 namespace ref {
+/// Whether one pixel's winner is kept.
+bool consistent(const CheckLeftRight& in, int y, int x);
 void check_winners(const CheckLeftRight& in, View<std::int16_t> dst);
 void check_left_right(const CheckLeftRight& in, View<const std::uint16_t> fine, View<std::uint16_t> dst);
 }  // namespace ref

@@ -5,7 +5,6 @@
 #include "core/check.h"
 
 namespace duo::ref {
-namespace {
 
 bool consistent(const CheckLeftRight& in, int y, int x) {
   const int d = in.left.at(y, x);
@@ -18,8 +17,6 @@ bool consistent(const CheckLeftRight& in, int y, int x) {
   }
   return false;
 }
-
-}  // namespace
 
 void check_winners(const CheckLeftRight& in, View<std::int16_t> dst) {
   DUO_CHECK(in.left.size() == in.right.size() && in.left.size() == dst.size());
