@@ -1,8 +1,10 @@
 #include "matchers/sgm/sgm.h"
 
 #include "stages/balance/balance.h"
+#include "stages/bilateral/bilateral.h"
 #include "stages/check_left_right/check_left_right.h"
 #include "stages/match_planes/match_planes.h"
+#include "stages/noise/noise.h"
 
 namespace duo::ref {
 
@@ -12,9 +14,16 @@ Sgm::Sgm(const SgmParams& params, const MatchSetup& setup)
 void Sgm::match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer) {
   ref::balance(pair, maps_.balanced);
   timer.stage("balance");
-  ref::match_planes(pair.left, pair.left_inside, left_);
-  ref::match_planes(maps_.balanced, pair.right_inside, right_);
-  timer.stage("match_planes");
+  const int noise_q4 = params_.soften != 0 ? ref::noise_q4(pair.left, pair.right) : 0;
+  timer.stage("noise");
+  const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
+    if (noise_q4 > 0) ref::bilateral(gray, bilateral_range(noise_q4), maps_.softened);
+    timer.stage("bilateral");
+    ref::match_planes(noise_q4 > 0 ? maps_.softened.view() : gray, inside, census_dead_zone(noise_q4), out);
+    timer.stage("match_planes");
+  };
+  planes(pair.left, pair.left_inside, left_);
+  planes(maps_.balanced, pair.right_inside, right_);
   const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, params_.semi_global()};
   ref::semi_global(in, {maps_.left_winner, maps_.right_winner, maps_.fine, out.confidence});
   timer.stage("semi_global");
@@ -26,7 +35,7 @@ void Sgm::match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer) {
   timer.stage("check_left_right");
   ref::remove_speckle(checked, params_.speckle_step_q4, params_.speckle);
   timer.stage("speckle");
-  if (params_.smooth != 0) ref::weighted_median({checked, pair.left}, out.d_q4);
+  if (params_.smooth != 0) ref::weighted_median({checked, in.left.value[0]}, out.d_q4);
   if (!out.confidence.empty()) keep_confidence(out.d_q4, out.confidence);
   timer.stage("weighted_median");
 }

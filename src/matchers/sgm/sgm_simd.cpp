@@ -1,8 +1,10 @@
 #include "matchers/sgm/sgm.h"
 
 #include "stages/balance/balance.h"
+#include "stages/bilateral/bilateral.h"
 #include "stages/check_left_right/check_left_right.h"
 #include "stages/match_planes/match_planes.h"
+#include "stages/noise/noise.h"
 
 namespace duo::simd {
 
@@ -20,9 +22,16 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
 void Sgm::match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer) {
   simd::balance(pool_, pair, maps_.balanced);
   timer.stage("balance");
-  simd::match_planes(pool_, pair.left, pair.left_inside, left_);
-  simd::match_planes(pool_, maps_.balanced, pair.right_inside, right_);
-  timer.stage("match_planes");
+  const int noise_q4 = params_.soften != 0 ? simd::noise_q4(pool_, pair.left, pair.right) : 0;
+  timer.stage("noise");
+  const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
+    if (noise_q4 > 0) simd::bilateral(pool_, gray, bilateral_range(noise_q4), maps_.softened);
+    timer.stage("bilateral");
+    simd::match_planes(pool_, noise_q4 > 0 ? maps_.softened.view() : gray, inside, census_dead_zone(noise_q4), out);
+    timer.stage("match_planes");
+  };
+  planes(pair.left, pair.left_inside, left_);
+  planes(maps_.balanced, pair.right_inside, right_);
   const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, params_.semi_global()};
   simd::semi_global(pool_, in, scratch_, {maps_.left_winner, maps_.right_winner, maps_.fine, out.confidence});
   timer.stage("semi_global");
@@ -34,7 +43,7 @@ void Sgm::match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer) {
   timer.stage("check_left_right");
   simd::remove_speckle(pool_, checked, params_.speckle_step_q4, params_.speckle, speckle_scratch_);
   timer.stage("speckle");
-  if (params_.smooth != 0) simd::weighted_median(pool_, {checked, pair.left}, smooth_scratch_, out.d_q4);
+  if (params_.smooth != 0) simd::weighted_median(pool_, {checked, in.left.value[0]}, smooth_scratch_, out.d_q4);
   if (!out.confidence.empty()) keep_confidence(out.d_q4, out.confidence);
   timer.stage("weighted_median");
 }

@@ -99,6 +99,45 @@ TEST(Sgm, FindsWallAndBoxInADarkerPicture) {
   EXPECT_LT(wrong, right / 100);
 }
 
+/// A wall with little texture at 9 px, seen with white noise of `sigma` gray levels.
+struct NoisyWall {
+  static constexpr int kAt_px = 9;
+  Image<std::uint8_t> left, right;
+  NoisyWall(Size size, double sigma) : left(size), right(size) {
+    std::mt19937 rng(4);
+    std::normal_distribution<double> noise(0, 1);
+    const auto value = [&](int y, int x) {
+      const double texture =
+          5 * std::sin(0.35 * x + 0.2 * y) + 4 * std::sin(0.13 * x * (1 + 0.01 * y)) + 3 * std::sin(0.31 * y);
+      return static_cast<std::uint8_t>(std::lround(120 + texture + sigma * noise(rng)));
+    };
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) left.at(y, x) = value(y, x), right.at(y, x) = value(y, x + kAt_px);
+  }
+  /// Pixels found within one.
+  int right_ones(bool soften) const {
+    Image<std::uint16_t> d_q4(left.size());
+    StageTimer timer;
+    Pool pool(1);
+    simd::Sgm(pool, *sgm_params("default", {{"soften", soften}}), {left.size(), 32, false}).match({left, right}, {d_q4}, timer);
+    int found = 0;
+    for (int y = 0; y < left.height(); ++y)
+      for (int x = kAt_px; x < left.width(); ++x)
+        found += d_q4.at(y, x) != Disparity::kNone && std::abs(d_q4.at(y, x) - 16 * kAt_px) <= 16;
+    return found;
+  }
+};
+
+TEST(Sgm, FindsMoreInNoiseWhenItSoftens) {
+  const Size size{160, 120};
+  EXPECT_EQ(NoisyWall(size, 0).right_ones(true), NoisyWall(size, 0).right_ones(false));
+  const NoisyWall noisy(size, 5);
+  const int softened = noisy.right_ones(true), as_it_is = noisy.right_ones(false);
+  std::printf("noise of 5 levels: %d of %d pixels, %d without softening\n", softened,
+              size.height * (size.width - NoisyWall::kAt_px), as_it_is);
+  EXPECT_GT(softened, as_it_is * 5 / 4);
+}
+
 // A plane whose disparity rises by one pixel in 25 columns: every fraction must be as frequent as any other.
 TEST(Sgm, SubPixelIsNotDrawnToWholePixels) {
   const Size size{440, 60};

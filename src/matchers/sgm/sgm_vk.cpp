@@ -24,6 +24,8 @@ Result<Sgm> Sgm::make(const Device& device, const SgmParams& params, const Match
   out.setup_ = setup;
   DUO_TRY_ASSIGN(out.maps_, make_maps(device, params, setup));
   DUO_TRY_ASSIGN(out.balance_, Balance::make(device));
+  DUO_TRY_ASSIGN(out.noise_, Noise::make(device));
+  DUO_TRY_ASSIGN(out.bilateral_, Bilateral::make(device));
   DUO_TRY_ASSIGN(out.match_planes_, MatchPlanes::make(device));
   DUO_TRY_ASSIGN(out.semi_global_, SemiGlobal::make(device, setup.max_disparity, params.semi_global()));
   DUO_TRY_ASSIGN(out.check_left_right_, CheckLeftRight::make(device));
@@ -40,8 +42,12 @@ Result<Sgm::Maps> Sgm::make_maps(const Device& device, const SgmParams& params, 
   // First what may be too large.
   DUO_TRY_ASSIGN(out.semi_global, SemiGlobal::Scratch::make(device, size, setup.max_disparity, params.semi_global()));
   DUO_TRY_ASSIGN(out.balance, Balance::Scratch::make(device, size));
+  DUO_TRY_ASSIGN(out.noise, Noise::Scratch::make(device));
   DUO_TRY_ASSIGN(out.speckle, RemoveSpeckle::Scratch::make(device, size));
   DUO_TRY_ASSIGN(out.balanced, make_map<std::uint8_t>(device, "balanced", size));
+  DUO_TRY_ASSIGN(out.noise_q4, Buffer::make(device, "sgm noise", sizeof(std::uint32_t), Memory::kDevice));
+  DUO_TRY_ASSIGN(out.soft_left, make_map<std::uint8_t>(device, "soft left", size));
+  DUO_TRY_ASSIGN(out.soft_right, make_map<std::uint8_t>(device, "soft right", size));
   DUO_TRY_ASSIGN(out.left_planes, make_map<std::uint32_t>(device, "left planes", planes));
   DUO_TRY_ASSIGN(out.right_planes, make_map<std::uint32_t>(device, "right planes", planes));
   DUO_TRY_ASSIGN(out.left_winner, make_map<std::int16_t>(device, "left winner", size));
@@ -64,7 +70,7 @@ void Sgm::record(Recorder& recorder, const Input& pair, const Output& out) const
   recorder.stage("check_left_right");
   remove_speckle_.record(recorder, checked, params_.speckle_step_q4, params_.speckle, maps_.speckle, size);
   recorder.stage("speckle");
-  if (params_.smooth != 0) weighted_median_.record(recorder, {checked, pair.left}, out.d_q4, size);
+  if (params_.smooth != 0) weighted_median_.record(recorder, {checked, left_of(pair)}, out.d_q4, size);
   if (!out.confidence.absent())
     recorder.dispatch(keep_confidence_, KeepConfidencePush{out.d_q4.plane, out.confidence.plane, size.width, size.height},
                       {reads(out.d_q4), writes(out.confidence)}, groups_for(size));
@@ -74,11 +80,23 @@ void Sgm::record(Recorder& recorder, const Input& pair, const Output& out) const
 void Sgm::record_winners(Recorder& recorder, const Input& pair, BufferView<std::uint8_t> margin) const {
   const Size size = setup_.size;
   const auto balanced = whole<std::uint8_t>(maps_.balanced);
+  auto softened = balanced;
   const auto left = whole<std::uint32_t>(maps_.left_planes), right = whole<std::uint32_t>(maps_.right_planes);
   balance_.record(recorder, {pair.left, pair.right, pair.left_inside, pair.right_inside}, maps_.balance, balanced, size);
   recorder.stage("balance");
-  match_planes_.record(recorder, pair.left, pair.left_inside, left, size);
-  match_planes_.record(recorder, balanced, pair.right_inside, right, size);
+  if (params_.soften != 0)
+    noise_.record(recorder, pair.left, pair.right, maps_.noise, maps_.noise_q4, size);
+  else
+    recorder.fill(maps_.noise_q4, 0);
+  recorder.stage("noise");
+  if (params_.soften != 0) {
+    softened = whole<std::uint8_t>(maps_.soft_right);
+    bilateral_.record(recorder, pair.left, maps_.noise_q4, left_of(pair), size);
+    bilateral_.record(recorder, balanced, maps_.noise_q4, softened, size);
+  }
+  recorder.stage("bilateral");
+  match_planes_.record(recorder, left_of(pair), pair.left_inside, maps_.noise_q4, left, size);
+  match_planes_.record(recorder, softened, pair.right_inside, maps_.noise_q4, right, size);
   recorder.stage("match_planes");
   semi_global_.record(recorder, left, right, maps_.semi_global,
                       {whole<std::int16_t>(maps_.left_winner), whole<std::int16_t>(maps_.right_winner),

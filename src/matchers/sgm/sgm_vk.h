@@ -3,8 +3,10 @@
 
 #include "matchers/sgm/sgm.h"
 #include "stages/balance/balance_vk.h"
+#include "stages/bilateral/bilateral_vk.h"
 #include "stages/check_left_right/check_left_right_vk.h"
 #include "stages/match_planes/match_planes_vk.h"
+#include "stages/noise/noise_vk.h"
 #include "stages/semi_global/semi_global_vk.h"
 #include "stages/speckle/speckle_vk.h"
 #include "stages/weighted_median/weighted_median_vk.h"
@@ -31,13 +33,18 @@ class Sgm {
  private:
   /// The maps between the stages, and the stages' own memory.
   struct Maps {
-    Buffer balanced, left_planes, right_planes, left_winner, right_winner, fine, checked;
+    Buffer balanced, noise_q4, soft_left, soft_right, left_planes, right_planes, left_winner, right_winner, fine, checked;
     Balance::Scratch balance;
+    Noise::Scratch noise;
     SemiGlobal::Scratch semi_global;
     RemoveSpeckle::Scratch speckle;
   };
   static Result<Maps> make_maps(const Device& device, const SgmParams& params, const MatchSetup& setup);
   void record_winners(Recorder& recorder, const Input& pair, BufferView<std::uint8_t> margin) const;
+  /// The left picture as it is matched.
+  BufferView<std::uint8_t> left_of(const Input& pair) const {
+    return params_.soften != 0 ? whole<std::uint8_t>(maps_.soft_left) : pair.left;
+  }
   template <class T>
   BufferView<T> whole(const Buffer& buffer) const {
     return {buffer, {0, setup_.size.width}};
@@ -47,6 +54,8 @@ class Sgm {
   MatchSetup setup_;
   Maps maps_;
   Balance balance_;
+  Noise noise_;
+  Bilateral bilateral_;
   MatchPlanes match_planes_;
   SemiGlobal semi_global_;
   CheckLeftRight check_left_right_;

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_8bit_storage : require
+#include "core/noise.h"
 #include "stages/match_planes/match_planes_params.h"
 
 // Two tiles: gray, then all values with a border of one pixel for the intervals. Moves 14 bytes a pixel (2 read with an inside
@@ -8,7 +9,8 @@
 layout(local_size_x = kGroupWidth, local_size_y = kGroupHeight) in;
 layout(std430, binding = 0) readonly buffer Gray { uint8_t gray[]; };
 layout(std430, binding = 1) readonly buffer Inside { uint8_t inside[]; };
-layout(std430, binding = 2) writeonly buffer Planes { uint planes[]; };
+layout(std430, binding = 2) readonly buffer Noise { uint noise_q4; };
+layout(std430, binding = 3) writeonly buffer Planes { uint planes[]; };
 layout(push_constant) uniform Push { MatchPlanesPush p; };
 
 const ivec2 kCensus[16] = {ivec2(-2, -2), ivec2(0, -2), ivec2(2, -2), ivec2(-1, -1), ivec2(1, -1), ivec2(-3, 0),
@@ -38,8 +40,9 @@ uint values_at(int i) {
 
 uint census_at(int i) {
   uint bits = 0;
+  const int least = tile[i] - census_dead_zone(int(noise_q4));
   for (int k = 0; k < 16; ++k)
-    bits |= uint(tile[i + kCensus[k].y * kTileWidth + kCensus[k].x] < tile[i]) << k;
+    bits |= uint(tile[i + kCensus[k].y * kTileWidth + kCensus[k].x] < least) << k;
   return bits;
 }
 

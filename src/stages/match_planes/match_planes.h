@@ -10,10 +10,12 @@ namespace duo {
 
 /// Fills the planes of one view from its gray picture.
 ///
-/// Census: 16 neighbours at kCensus, one bit each: darker than the pixel. Channels: gray; Sobel x and y, a quarter of the 3x3
+/// Census: 16 neighbours at kCensus, one bit each: darker than the pixel by more than `dead_zone`, which noise may stay within.
+/// Channels: gray; Sobel x and y, a quarter of the 3x3
 /// sum, rounded down, clipped to +-63, plus 128. Interval: least and greatest of the value and its means with the left, right,
 /// upper and lower neighbour, halves rounded up. Outside: 255 where the 3x3 neighbourhood is not all inside its raw picture.
 ///
+/// Units    dead_zone in gray levels, 0 .. 255
 /// Shape    gray H x W; inside the same or empty = all inside; out made with this size
 /// Border   edge pixels continue
 /// Threads  rows are independent
@@ -26,10 +28,10 @@ inline constexpr int kCensus[16][2] = {  // x, y
     {1, 0},   {2, 0},  {3, 0},  {-1, 1},  {1, 1},  {-2, 2}, {0, 2},  {2, 2}};
 
 namespace ref {
-void match_planes(View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out);
+void match_planes(View<const std::uint8_t> gray, View<const std::uint8_t> inside, int dead_zone, PlaneImages& out);
 }
 namespace simd {
-void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out);
+void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uint8_t> inside, int dead_zone, PlaneImages& out);
 }
 
 }  // namespace duo

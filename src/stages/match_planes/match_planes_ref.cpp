@@ -21,11 +21,11 @@ int sobel(View<const std::uint8_t> gray, int y, int x, bool along_x) {
   return std::clamp(sum >> 2, -63, 63) + 128;
 }
 
-void census(View<const std::uint8_t> gray, int y, int x, PlaneImages& out) {
+void census(View<const std::uint8_t> gray, int y, int x, int dead_zone, PlaneImages& out) {
   for (int byte = 0; byte < 2; ++byte) {
     int bits = 0;
     for (int k = 0; k < 8; ++k)
-      bits |= (at(gray, y + kCensus[8 * byte + k][1], x + kCensus[8 * byte + k][0]) < gray.at(y, x)) << k;
+      bits |= (at(gray, y + kCensus[8 * byte + k][1], x + kCensus[8 * byte + k][0]) + dead_zone < gray.at(y, x)) << k;
     out.census[static_cast<std::size_t>(byte)].at(y, out.pad + x) = static_cast<std::uint8_t>(bits);
   }
 }
@@ -50,12 +50,12 @@ bool all_inside(View<const std::uint8_t> inside, int y, int x) {
 
 }  // namespace
 
-void match_planes(View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
+void match_planes(View<const std::uint8_t> gray, View<const std::uint8_t> inside, int dead_zone, PlaneImages& out) {
   DUO_CHECK(gray.size() == out.size && (inside.empty() || inside.size() == out.size));
   const int w = gray.width(), h = gray.height(), pad = out.pad;
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
-      census(gray, y, x, out);
+      census(gray, y, x, dead_zone, out);
       out.value[0].at(y, pad + x) = gray.at(y, x);
       out.value[1].at(y, pad + x) = static_cast<std::uint8_t>(sobel(gray, y, x, true));
       out.value[2].at(y, pad + x) = static_cast<std::uint8_t>(sobel(gray, y, x, false));

@@ -16,10 +16,11 @@ namespace duo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// `rows` are the gray rows y - 2 .. y + 2 at x = 0; writes up to a vector beyond w.
-void census_row(const std::uint8_t* const* rows, int w, std::uint8_t* low, std::uint8_t* high) {
+void census_row(const std::uint8_t* const* rows, int w, int dead_zone, std::uint8_t* low, std::uint8_t* high) {
   const hn::CappedTag<std::uint8_t, PlaneImages::kPadRight> d;
   for (int x = 0; x < w; x += static_cast<int>(hn::Lanes(d))) {
-    const auto centre = hn::LoadU(d, rows[2] + x);
+    // What is less than this is darker by more than the dead zone; nothing is less than 0.
+    const auto centre = hn::SaturatedSub(hn::LoadU(d, rows[2] + x), hn::Set(d, static_cast<std::uint8_t>(dead_zone)));
     for (int byte = 0; byte < 2; ++byte) {
       auto bits = hn::Zero(d);
       for (int k = 0; k < 8; ++k) {
@@ -91,7 +92,7 @@ void outside_row(View<const std::uint8_t> inside, int y, std::uint8_t* columns, 
 
 }  // namespace
 
-void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
+void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uint8_t> inside, int dead_zone, PlaneImages& out) {
   DUO_CHECK(gray.size() == out.size && (inside.empty() || inside.size() == out.size) && out.pad >= PlaneImages::kPadRight);
   const int w = gray.width(), h = gray.height(), pad = out.pad;
   const auto row = [&](View<std::uint8_t> plane, int y) { return plane.row(std::clamp(y, 0, h - 1)) + pad; };
@@ -110,7 +111,7 @@ void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uin
     for (int y = begin; y < end; ++y) {
       const std::uint8_t* rows[5];
       for (int i = 0; i < 5; ++i) rows[i] = row(out.value[0], y + i - 2);
-      HWY_DYNAMIC_DISPATCH(census_row)(rows, w, row(out.census[0], y), row(out.census[1], y));
+      HWY_DYNAMIC_DISPATCH(census_row)(rows, w, dead_zone, row(out.census[0], y), row(out.census[1], y));
       HWY_DYNAMIC_DISPATCH(sobel_row)(rows[1], rows[2], rows[3], w, row(out.value[1], y), row(out.value[2], y));
       for (const View<std::uint8_t> plane : {out.census[0], out.census[1], out.value[1], out.value[2]})
         out.continue_row(plane, y);

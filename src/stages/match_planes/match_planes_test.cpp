@@ -12,7 +12,7 @@ TEST(MatchPlanes, HandWorked) {
   for (int y = 0; y < 3; ++y)
     for (int x = 0; x < 5; ++x) gray.at(y, x) = static_cast<std::uint8_t>(10 * x);
   PlaneImages out(gray.size(), 0);
-  ref::match_planes(gray, {}, out);
+  ref::match_planes(gray, {}, 0, out);
   EXPECT_EQ(out.value[0].at(1, 2), 20);
   EXPECT_EQ(out.value[1].at(1, 2), 128 + 20);
   EXPECT_EQ(out.value[1].at(1, 0), 128 + 10);  // the edge continues: half the slope
@@ -23,12 +23,26 @@ TEST(MatchPlanes, HandWorked) {
     EXPECT_EQ(out.census[static_cast<std::size_t>(k / 8)].at(1, 2) >> (k % 8) & 1, kCensus[k][0] < 0 ? 1 : 0) << k;
 }
 
+// By hand: on the same ramp, one column darker is 10 darker: no longer beyond a dead zone of 10, but of 9.
+TEST(MatchPlanes, DeadZone) {
+  Image<std::uint8_t> gray({9, 5});
+  for (int y = 0; y < 5; ++y)
+    for (int x = 0; x < 9; ++x) gray.at(y, x) = static_cast<std::uint8_t>(10 * x);
+  for (const int dead_zone : {9, 10}) {
+    PlaneImages out(gray.size(), 0);
+    ref::match_planes(gray, {}, dead_zone, out);
+    for (int k = 0; k < 16; ++k)
+      EXPECT_EQ(out.census[static_cast<std::size_t>(k / 8)].at(2, 4) >> (k % 8) & 1, kCensus[k][0] < (dead_zone == 9 ? 0 : -1))
+          << k;
+  }
+}
+
 TEST(MatchPlanes, OutsideReachesOnePixel) {
   const auto gray = test::constant<std::uint8_t>({6, 5}, 7);
   auto inside = test::constant<std::uint8_t>({6, 5}, 255);
   inside.at(2, 1) = 0;
   PlaneImages out(gray.size(), 0);
-  ref::match_planes(gray, inside, out);
+  ref::match_planes(gray, inside, 0, out);
   for (int y = 0; y < 5; ++y)
     for (int x = 0; x < 6; ++x)
       EXPECT_EQ(out.outside.at(y, x), std::abs(y - 2) <= 1 && std::abs(x - 1) <= 1 ? 255 : 0) << y << " " << x;
@@ -45,11 +59,12 @@ TEST(MatchPlanes, SimdAgrees) {
         for (int y = 0; y < size.height; ++y)
           for (int x = 0; x < size.width; ++x) inside.view.at(y, x) = rng() % 9 ? 255 : 0;
         const View<const std::uint8_t> mask = masked ? View<const std::uint8_t>(inside.view) : View<const std::uint8_t>{};
+        const int dead_zone = masked ? 9 : 0;
         PlaneImages want(size, 64);
-        ref::match_planes(gray.view, mask, want);
+        ref::match_planes(gray.view, mask, dead_zone, want);
         test::each_target([&](const std::string& target) {
           PlaneImages got(size, 64);
-          simd::match_planes(two, gray.view, mask, got);
+          simd::match_planes(two, gray.view, mask, dead_zone, got);
           for (std::size_t i = 0; i < 2; ++i)
             test::expect_same<std::uint8_t>(want.census[i], got.census[i], "census " + target);
           for (std::size_t i = 0; i < 3; ++i) {

@@ -11,8 +11,9 @@ class MatchPlanes {
   /// The picture that holds a view's planes, packed as match_planes_params.h says.
   static Size packed_size(Size size);
   static Result<MatchPlanes> make(const Device& device);
-  /// `inside` may be absent = all inside; `planes` is of packed_size(size).
-  void record(Recorder& recorder, BufferView<std::uint8_t> gray, BufferView<std::uint8_t> inside,
+  /// `inside` may be absent = all inside; `noise_q4`: one word, from which the dead zone follows; `planes` is of
+  /// packed_size(size).
+  void record(Recorder& recorder, BufferView<std::uint8_t> gray, BufferView<std::uint8_t> inside, const Buffer& noise_q4,
               BufferView<std::uint32_t> planes, Size size) const;
 
  private:

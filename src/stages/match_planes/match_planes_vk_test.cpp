@@ -1,5 +1,6 @@
 #include "stages/match_planes/match_planes_vk.h"
 
+#include "core/noise.h"
 #include "tests/agree_vk.h"
 
 namespace duo {
@@ -42,19 +43,24 @@ TEST(MatchPlanesVk, Agrees) {
     for (const Size size : {Size{1, 1}, Size{2, 3}, Size{16, 8}, Size{17, 9}, Size{33, 6}, Size{131, 37}})
       for (const test::Fill how : test::kFills)
         for (const bool masked : {false, true}) {
+          const int noise_q4 = masked ? 70 : 0;
           Image<std::uint8_t> gray(size), inside(size);
           test::fill(gray.view(), how, rng);
           for (int y = 0; y < size.height; ++y)
             for (int x = 0; x < size.width; ++x) inside.at(y, x) = rng() % 13 ? 255 : 0;
           PlaneImages want(size, 0);
-          ref::match_planes(gray, masked ? View<const std::uint8_t>(inside) : View<const std::uint8_t>{}, want);
+          ref::match_planes(gray, masked ? View<const std::uint8_t>(inside) : View<const std::uint8_t>{},
+                            census_dead_zone(noise_q4), want);
 
           const OnDevice<std::uint8_t> in(device, gray, "gray"), mask(device, inside, "inside");
+          const auto noise = must(vk::Buffer::make(device, "noise", sizeof(std::uint32_t), vk::Memory::kDevice));
           const OnDevice<std::uint32_t> out(device, vk::MatchPlanes::packed_size(size), "planes");
           test::run_with(
               recorder,
               [&] {
-                stage.record(recorder, in.view(), masked ? mask.view() : vk::BufferView<std::uint8_t>{}, out.view(), size);
+                recorder.fill(noise, noise_q4);
+                stage.record(recorder, in.view(), masked ? mask.view() : vk::BufferView<std::uint8_t>{}, noise, out.view(),
+                             size);
               },
               in, mask, out);
           const std::string what = "match_planes" + where;
