@@ -71,8 +71,10 @@ TEST(Balance, SimdAgrees) {
         GrayPair pair{left.view, right.view};
         if (masked) pair.left_inside = pair.right_inside = inside.view;
         ref::balance(pair, want.view);
-        simd::balance(two, pair, got.view);
-        test::expect_same<std::uint8_t>(want.view, got.view, "balance simd");
+        test::each_target([&](const std::string& target) {
+          simd::balance(two, pair, got.view);
+          test::expect_same<std::uint8_t>(want.view, got.view, "balance " + target);
+        });
       }
 }
 
