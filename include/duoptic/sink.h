@@ -145,8 +145,9 @@ Result<std::unique_ptr<Sink>> make_osc(const std::string& target, Axes axes);
 /// The same with the Virtual Motion Capture protocol: bones of a humanoid avatar as rotations from its T-pose.
 Result<std::unique_ptr<Sink>> make_vmc(const std::string& target, const TrackHeader& header);
 
-/// `sink` behind a thread and a place for one frame, for live sources: write() copies what the sink wants and returns; a frame
-/// that comes before the last one was taken replaces it, and dropped() counts. Errors of `sink` come with the next call.
+/// `sink` behind a thread and a queue, for live sources: write() copies what the sink wants and returns. The queue has room for two
+/// seconds of poses, or for four frames with their pictures; when it is full the oldest frame in it goes, and dropped() counts.
+/// Errors of `sink` come with the next call.
 std::unique_ptr<Sink> in_background(std::unique_ptr<Sink> sink);
 
 /// The thesis's four panels: the raw left picture with joints as green boxes and bones as red lines, both broken where a joint

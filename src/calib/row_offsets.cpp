@@ -126,7 +126,7 @@ Rectification row_maps(const RowOffsets& rows) {
   const auto [w, h] = rows.size;
   out.geometry.size = rows.size;
   for (ResampleMap* map : {&out.left, &out.right}) {
-    *map = {Image<std::uint32_t>(rows.size), Image<std::uint16_t>(rows.size)};
+    *map = {Image<std::uint32_t>(rows.size), Image<std::uint16_t>(rows.size), map == &out.right};
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) put_place(*map, y, x, {double(x), map == &out.left ? y : y + rows.at(x, y)}, rows.size);
   }

@@ -100,6 +100,7 @@ Result<void> Frames::make_view(ViewMaps& view, const char* name, const ResampleM
   DUO_TRY(make_map<std::uint8_t>(device_, name, raw, view.gray));
   DUO_TRY(make_map<std::uint8_t>(device_, name, raw, view.denoised));
   if (map == nullptr) return {};
+  view.cubic_height = map->cubic ? raw.height : 0;
   DUO_TRY_ASSIGN(view.corner, sent(device_, name, map->corner));
   DUO_TRY_ASSIGN(view.fraction_q8, sent(device_, name, map->fraction_q8));
   DUO_TRY_ASSIGN(view.inside, sent(device_, name, inside_of(*map, raw)));
@@ -229,7 +230,8 @@ const Observers::Maps& Frames::maps_of(const Slot& slot) const {
 }
 
 Rectify::Map Frames::map_of(const ViewMaps& view) const {
-  return {whole<std::uint32_t>(view.corner, prepared_.size), whole<std::uint16_t>(view.fraction_q8, prepared_.size)};
+  return {whole<std::uint32_t>(view.corner, prepared_.size), whole<std::uint16_t>(view.fraction_q8, prepared_.size),
+          view.cubic_height};
 }
 
 Result<void> Frames::submit(int slot, const Pair& pair) {

@@ -1,10 +1,11 @@
-// in_background(): a mailbox with room for one frame before a sink.
+// in_background(): a queue before a sink.
 #include <algorithm>
 #include <condition_variable>
 #include <mutex>
 #include <new>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "duoptic/sink.h"
 
@@ -48,16 +49,21 @@ struct KeptFrame {
 
 class InBackground final : public Sink {
  public:
-  explicit InBackground(std::unique_ptr<Sink> sink) : sink_(std::move(sink)), thread_([this] { write_all(); }) {}
+  explicit InBackground(std::unique_ptr<Sink> sink)
+      : sink_(std::move(sink)), queue_(sink_->wants_pictures() ? 4 : 60), thread_([this] { write_all(); }) {}
   ~InBackground() override { stop(); }
 
   Result<void> write(const TrackedFrame& frame) override {
     {
       const std::lock_guard lock(mutex_);
       if (!state_) return state_;
-      if (waiting_) ++dropped_;
-      kept_.keep(frame, sink_->wants_pictures());
-      waiting_ = true;
+      if (waiting_ == queue_.size()) {
+        first_ = (first_ + 1) % queue_.size();
+        --waiting_;
+        ++dropped_;
+      }
+      queue_[(first_ + waiting_) % queue_.size()].keep(frame, sink_->wants_pictures());
+      ++waiting_;
     }
     changed_.notify_one();
     return {};
@@ -66,7 +72,7 @@ class InBackground final : public Sink {
     const std::lock_guard lock(mutex_);
     return dropped_;
   }
-  /// Waits for the frame that is being written and the one behind it.
+  /// Waits for the frame that is being written and those behind it.
   Result<void> finish() override {
     stop();
     DUO_TRY(state_);
@@ -87,10 +93,11 @@ class InBackground final : public Sink {
     KeptFrame taken;
     std::unique_lock lock(mutex_);
     while (state_) {
-      changed_.wait(lock, [this] { return waiting_ || stopped_; });
-      if (!waiting_) return;
-      std::swap(taken, kept_);
-      waiting_ = false;
+      changed_.wait(lock, [this] { return waiting_ > 0 || stopped_; });
+      if (waiting_ == 0) return;
+      std::swap(taken, queue_[first_]);
+      first_ = (first_ + 1) % queue_.size();
+      --waiting_;
       lock.unlock();
       Result<void> written = write(*sink_, taken);
       lock.lock();
@@ -110,8 +117,9 @@ class InBackground final : public Sink {
   std::unique_ptr<Sink> sink_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  KeptFrame kept_;
-  bool waiting_ = false, stopped_ = false;
+  std::vector<KeptFrame> queue_;  // a ring
+  std::size_t first_ = 0, waiting_ = 0;
+  bool stopped_ = false;
   std::int64_t dropped_ = 0;
   Result<void> state_;  // of the last frame written
   std::thread thread_;  // last: it uses all of the above

@@ -227,21 +227,21 @@ class SlowSink final : public Sink {
   Log& log_;
 };
 
-TEST(InBackground, ASlowSinkSlowsNothingAndNewestWins) {
+TEST(InBackground, ASlowSinkSlowsNothingAndTheOldestGo) {
   SlowSink::Log log;
   const auto sink = in_background(std::make_unique<SlowSink>(log));
-  for (std::int64_t i = 0; i < 6; ++i) {
+  for (std::int64_t i = 0; i < 10; ++i) {
     Instant instant;  // gone before it is written
     instant.frame.color = Image<Rgb8>({4, 4});
     instant.frame.color.at(1, 1) = {static_cast<std::uint8_t>(10 + i), 0, 0};
     ASSERT_TRUE(sink->write(instant.tracked(i)));
     if (i == 0) log.wait_for(1);
   }
-  EXPECT_EQ(sink->dropped(), 4);  // 0 is being written, 5 waits
-  log.allow(2);
+  EXPECT_EQ(sink->dropped(), 5);  // 0 is being written, 6 to 9 wait
+  log.allow(5);
   ASSERT_TRUE(sink->finish());
-  EXPECT_EQ(log.written, (std::vector<std::int64_t>{0, 5}));
-  EXPECT_EQ(log.pixel, (Rgb8{15, 0, 0}));
+  EXPECT_EQ(log.written, (std::vector<std::int64_t>{0, 6, 7, 8, 9}));
+  EXPECT_EQ(log.pixel, (Rgb8{19, 0, 0}));
   EXPECT_TRUE(log.finished);
 }
 

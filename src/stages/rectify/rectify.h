@@ -1,6 +1,7 @@
 // Undistort and rectify in one resampling pass, in fixed point so that every engine gives the same bits.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "core/pool.h"
@@ -17,25 +18,38 @@ struct ResampleMap {
   static constexpr std::uint32_t kOutside = 0xFFFFFFFF;
   Image<std::uint32_t> corner;
   Image<std::uint16_t> fraction_q8;
+  bool cubic = false;  // along columns, not linear
 };
 
-// Bilinear resampling through a map.
+/// Catmull-Rom's weights, in 1/256, of the row before a place, its row, and the two behind; the place is f/256 below its row.
+constexpr std::array<int, 4> cubic_weights(int f) {
+  const int f2 = f * f, f3 = f2 * f, half = 1 << 16;
+  const int before = (-f3 + 512 * f2 - 65536 * f + half) >> 17, after = (-3 * f3 + 1024 * f2 + 65536 * f + half) >> 17;
+  const int last = (f3 - 256 * f2 + half) >> 17;
+  return {before, 256 - before - after - last, after, last};
+}
+
+// Resampling through a map, bilinear, or with `cubic` linear along rows and cubic along columns: where a picture moves by a
+// part of a row and nothing has smoothed it before, two rows' mean would blur it against the other one.
 //
 // value = ((p00 (256-fx) + p01 fx) (256-fy) + (p10 (256-fx) + p11 fx) fy + 32768) >> 16, exact in 32 bits
+// cubic: the same of the four rows y0 - 1 .. y0 + 2 with cubic_weights(fy), clipped to 0 .. 255; rows beyond the picture
+// continue
 //
 // Shape    src is the raw picture; dst and inside have the map's size
 // Units    inside: 255 where the raw picture covers the pixel, 0 outside (dst is 0 there; never match on it)
 // Border   the map marks what is outside
 // Threads  rows are independent
 // Exact    ref, simd and vk agree bit for bit
-// Source   one texture-coordinate transform per pixel, as in the thesis; bilinear with 8-bit weights
+// Source   one texture-coordinate transform per pixel, as in the thesis; bilinear with 8-bit weights; Catmull, Rom, "A class of
+//          local interpolating splines", 1974
 namespace ref {
 void rectify(View<const std::uint8_t> src, const ResampleMap& map, View<std::uint8_t> dst, View<std::uint8_t> inside);
 }
 namespace simd {
 void rectify(Pool& pool, View<const std::uint8_t> src, const ResampleMap& map, View<std::uint8_t> dst,
              View<std::uint8_t> inside);
-/// Colour for display and clouds only: no engine computes with it.
+/// Colour for display and clouds only, always bilinear: no engine computes with it.
 void rectify(Pool& pool, View<const Rgb8> src, const ResampleMap& map, View<Rgb8> dst);
 }  // namespace simd
 

@@ -42,6 +42,22 @@ struct Place {
     return hn::Add(hn::And(products, hn::Set(d, 0xFFFF)), hn::ShiftRight<16>(products));
   }
 
+  /// From the pairs of four rows; cubic_weights() in lanes.
+  hn::Vec<hn::Rebind<std::uint8_t, D>> cubic(V before_pair, V here_pair, V after_pair, V last_pair) const {
+    const hn::RebindToSigned<D> d;
+    const auto f = hn::BitCast(d, fy), f2 = hn::Mul(f, f), f3 = hn::Mul(f2, f), linear = hn::ShiftLeft<16>(f);
+    const auto rounded = [&](auto v) HWY_ATTR { return hn::ShiftRight<17>(hn::Add(v, hn::Set(d, 1 << 16))); };
+    const auto before = rounded(hn::Sub(hn::Sub(hn::ShiftLeft<9>(f2), f3), linear));
+    const auto after = rounded(hn::Add(hn::Sub(hn::ShiftLeft<10>(f2), hn::Mul(f3, hn::Set(d, 3))), linear));
+    const auto last = rounded(hn::Sub(f3, hn::ShiftLeft<8>(f2)));
+    const auto here = hn::Sub(hn::Set(d, 256), hn::Add(before, hn::Add(after, last)));
+    const auto row = [&](V pair, auto weight) HWY_ATTR { return hn::Mul(hn::BitCast(d, across(pair)), weight); };
+    const auto sum =
+        hn::Add(hn::Add(row(before_pair, before), row(here_pair, here)), hn::Add(row(after_pair, after), row(last_pair, last)));
+    const auto value = hn::And(hn::ShiftRight<16>(hn::Add(sum, hn::Set(d, 32768))), hn::BitCast(d, seen));
+    return hn::DemoteTo(hn::Rebind<std::uint8_t, D>(), value);  // clips
+  }
+
   hn::Vec<hn::Rebind<std::uint8_t, D>> value(V top_pair, V bottom_pair) const {
     const D d;
     const auto top = across(top_pair), bottom = across(bottom_pair);
@@ -52,8 +68,8 @@ struct Place {
   }
 };
 
-// One 32-bit gather fetches p00 and p01, another p10 and p11 (two bytes of each are not used). The lower one could pass the end
-// of the last row, by two bytes at most: there it starts that much earlier and is shifted back.
+// One 32-bit gather fetches p00 and p01, another p10 and p11 (two bytes of each are not used). The last row could be passed at
+// its end, by two bytes at most: there a gather starts that much earlier and is shifted back.
 void rectify_rows(View<const std::uint8_t> src, const ResampleMap& map, View<std::uint8_t> dst, View<std::uint8_t> inside,
                   int y_begin, int y_end) {
   const D d;
@@ -72,10 +88,19 @@ void rectify_rows(View<const std::uint8_t> src, const ResampleMap& map, View<std
     const Place p(corner_row, fraction_row);
     const auto upper_at = hn::BitCast(d_signed, hn::Add(hn::Mul(p.y0, hn::Set(d, static_cast<std::uint32_t>(stride))), p.x0));
     const auto lower_at = hn::Add(upper_at, hn::Set(d_signed, stride));
-    const auto lower_from = hn::Min(lower_at, hn::Set(d_signed, last_word));
-    const auto back = hn::BitCast(d, hn::ShiftLeft<3>(hn::Sub(lower_at, lower_from)));
-    const auto top = hn::GatherOffset(d, words, upper_at), bottom = hn::Shr(hn::GatherOffset(d, words, lower_from), back);
-    hn::StoreU(p.value(pair(top), pair(bottom)), d_u8, out);
+    const auto fetched = [&](auto at) HWY_ATTR {
+      const auto from = hn::Min(at, hn::Set(d_signed, last_word));
+      return pair(hn::Shr(hn::GatherOffset(d, words, from), hn::BitCast(d, hn::ShiftLeft<3>(hn::Sub(at, from)))));
+    };
+    const auto top = pair(hn::GatherOffset(d, words, upper_at)), bottom = fetched(lower_at);
+    if (map.cubic) {
+      const auto x0 = hn::BitCast(d_signed, p.x0), step = hn::Set(d_signed, stride);
+      const auto before_at = hn::Max(hn::Sub(upper_at, step), x0);  // row 0 continues
+      const auto last_at = hn::Min(hn::Add(lower_at, step), hn::Add(x0, hn::Set(d_signed, (src.height() - 1) * stride)));
+      hn::StoreU(p.cubic(fetched(before_at), top, bottom, fetched(last_at)), d_u8, out);
+    } else {
+      hn::StoreU(p.value(top, bottom), d_u8, out);
+    }
     hn::StoreU(hn::DemoteTo(d_u8, hn::BitCast(d_signed, hn::And(p.seen, hn::Set(d, 255)))), d_u8, inside_out);
   };
 

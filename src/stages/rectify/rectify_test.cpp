@@ -37,6 +37,31 @@ TEST(Rectify, HandWorked) {
   EXPECT_EQ(value_at(src, {1, 1, 255, 255}), 99);
 }
 
+// By hand: half-way between rows the weights are -1/16, 9/16, 9/16, -1/16, so of 0 10 20 40 (0 + 90 + 180 - 40) / 16 = 14.4; on
+// a row it is that row; the first row continues above it: (-10 + 90 + 180 - 40) / 16 = 13.75; 0 0 250 250 rings below 0 and is
+// cut.
+TEST(Rectify, CubicAlongColumns) {
+  EXPECT_EQ(cubic_weights(128), (std::array{-16, 144, 144, -16}));
+  EXPECT_EQ(cubic_weights(0), (std::array{0, 256, 0, 0}));
+  for (int f = 0; f < 256; ++f) {
+    const auto w = cubic_weights(f);
+    EXPECT_EQ(w[0] + w[1] + w[2] + w[3], 256) << f;
+    EXPECT_NEAR(-w[0] + w[2] + 2 * w[3], f, 2) << f;  // a slope stays what it is
+  }
+  const auto at = [](std::initializer_list<std::initializer_list<int>> rows, Place p) {
+    ResampleMap map = one_pixel(p);
+    map.cubic = true;
+    Image<std::uint8_t> dst({1, 1}), inside({1, 1});
+    ref::rectify(test::image<std::uint8_t>(rows), map, dst, inside);
+    return static_cast<int>(dst.at(0, 0));
+  };
+  EXPECT_EQ(at({{0, 0}, {10, 10}, {20, 20}, {40, 40}}, {0, 1, 0, 128}), 14);
+  EXPECT_EQ(at({{0, 0}, {10, 30}, {20, 20}, {40, 40}}, {0, 1, 128, 0}), 20);
+  EXPECT_EQ(at({{10, 10}, {20, 20}, {40, 40}}, {0, 0, 0, 128}), 14);
+  EXPECT_EQ(at({{0, 0}, {0, 0}, {250, 250}, {250, 250}}, {0, 0, 0, 128}), 0);
+  EXPECT_EQ(at({{0, 0}, {40, 40}, {20, 20}}, {0, 1, 0, 128}), (0 + 360 + 180 - 20 + 8) / 16);  // the last row continues
+}
+
 TEST(Rectify, MarksOutside) {
   const auto src = test::constant<std::uint8_t>({4, 4}, 200);
   ResampleMap map = one_pixel({0, 0, 0, 0});
@@ -48,8 +73,8 @@ TEST(Rectify, MarksOutside) {
 }
 
 /// Any place of the raw picture, its last ones often, and a tenth outside.
-ResampleMap random_map(Size raw, Size size, std::mt19937& rng) {
-  ResampleMap map{Image<std::uint32_t>(size), Image<std::uint16_t>(size)};
+ResampleMap random_map(Size raw, Size size, std::mt19937& rng, bool cubic = false) {
+  ResampleMap map{Image<std::uint32_t>(size), Image<std::uint16_t>(size), cubic};
   const auto place = [&](int length) {
     const auto last = static_cast<std::uint32_t>(length - 2);
     return rng() % 4 == 0 ? last - std::min<std::uint32_t>(last, rng() % 3) : static_cast<std::uint32_t>(rng() % (last + 1));
@@ -74,7 +99,7 @@ TEST(Rectify, SimdAgrees) {
         std::vector<std::uint8_t> pixels(static_cast<std::size_t>(stride * (raw.height - 1) + raw.width));
         const View<std::uint8_t> src(pixels.data(), raw, stride);
         test::fill(src, how, rng);
-        const ResampleMap map = random_map(raw, size, rng);
+        const ResampleMap map = random_map(raw, size, rng, rng() % 2 == 0);
         test::Tight<std::uint8_t> want(size), want_inside(size);
         ref::rectify(src, map, want.view, want_inside.view);
         test::each_target([&](const std::string& target) {

@@ -31,7 +31,8 @@ TEST(RectifyVk, Agrees) {
         for (const test::Fill how : test::kFills) {
           Image<std::uint8_t> src(raw), want(size), want_inside(size);
           test::fill(src.view(), how, rng);
-          const ResampleMap map = random_map(size, raw, rng);
+          ResampleMap map = random_map(size, raw, rng);
+          map.cubic = rng() % 2 == 0;
           ref::rectify(src, map, want, want_inside);
 
           const OnDevice<std::uint8_t> in(device, src, "raw"), out(device, size, "dst"), inside(device, size, "inside");
@@ -40,7 +41,8 @@ TEST(RectifyVk, Agrees) {
           test::run_with(
               recorder,
               [&] {
-                rectify.record(recorder, in.view(), {corner.view(), fraction.view()}, out.view(), inside.view(), size);
+                rectify.record(recorder, in.view(), {corner.view(), fraction.view(), map.cubic ? raw.height : 0}, out.view(),
+                               inside.view(), size);
               },
               in, out, inside, corner, fraction);
           test::expect_same<std::uint8_t>(want, out.pixels("rectify" + where), "rectify" + where);
