@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kTerms = 6;
 constexpr std::size_t kLeastPoints = 24;
-constexpr double kWorthIt_px = 0.15;  // a shift this small costs sharpness for nothing
+constexpr double kWorthIt_px = 0.1;  // less is not worth the resampling
 using Terms = Eigen::Matrix<double, kTerms, 1>;
 
 struct RowDifference {
