@@ -71,6 +71,63 @@ TEST(Engine, RefAndSimdAgreeOnRawPictures) {
   }
 }
 
+/// What `whole` has inside the windows, and nothing elsewhere.
+template <class T>
+Image<T> only_in(const std::vector<Window>& windows, const Image<T>& whole, T none) {
+  Image<T> out(whole.size());
+  for (int y = 0; y < out.height(); ++y)
+    for (int x = 0; x < out.width(); ++x) {
+      const auto has_it = [&](const Window& window) { return window.contains(y, x); };
+      out.at(y, x) = std::any_of(windows.begin(), windows.end(), has_it) ? whole.at(y, x) : none;
+    }
+  return out;
+}
+
+/// `got` was asked to look at the windows only, `whole` was not.
+void expect_windows(const std::vector<Window>& windows, const Frame& whole, const Frame& got, const std::string& who) {
+  const std::uint8_t none = 0;
+  test::expect_same<std::uint16_t>(only_in(windows, whole.disparity.d_q4, Disparity::kNone), got.disparity.d_q4,
+                                   who + " disparity");
+  test::expect_same<std::uint8_t>(only_in(windows, whole.disparity.origin, none), got.disparity.origin, who + " origin");
+  test::expect_same<std::uint16_t>(only_in(windows, whole.depth_mm, std::uint16_t{0}), got.depth_mm, who + " depth");
+  test::expect_same<std::uint8_t>(only_in(windows, whole.confidence, none), got.confidence, who + " confidence");
+  test::expect_same<std::uint8_t>(whole.left, got.left, who + " left");
+}
+
+// Wherever the windows lie, over borders and each other, in them is what the whole picture's frame has.
+TEST(Engine, WindowsHaveTheWholePicturesValues) {
+  SyntheticSetup synthetic;
+  synthetic.size = {96, 256};  // higher than what a row depends on
+  const SyntheticPair scene = render_synthetic(synthetic, 2);
+  const std::vector<Window> sets[] = {{{30, 100, 40, 30}},
+                                      {{0, 0, 20, 12}},
+                                      {{75, 250, 100, 100}, {-20, 230, 30, 4}},
+                                      {{10, 120, 30, 20}, {20, 110, 30, 40}, {20, 110, 0, 9}},
+                                      {{0, 130, 96, 1}},
+                                      {{500, 20, 30, 30}},
+                                      {{-9, -9, 300, 300}}};
+  for (const Choice& choice : kChoices)
+    for (const bool fill : {false, true}) {
+      duo::Setup setup = raw_setup(scene, choice);
+      setup.fill = fill;
+      setup.wants.confidence = std::string_view(choice.matcher) == "sgm";
+      const std::string what = std::string(choice.matcher) + " " + choice.preset + (fill ? " filled" : "");
+      const auto reference = prepared("ref", 1, setup);
+      const Frame& whole = run(*reference, scene.pair);
+      for (const int threads : {1, 2}) {
+        const auto simd = prepared("simd", threads, setup);
+        for (const std::vector<Window>& windows : sets) {
+          simd->look_at(windows);
+          expect_windows(windows, whole, run(*simd, scene.pair), what + " from row " + std::to_string(windows[0].y));
+        }
+        simd->look_at({});
+        expect_windows({Window::all(whole.left.size())}, whole, run(*simd, scene.pair), what + ", whole again");
+      }
+      reference->look_at(sets[3]);
+      expect_windows(sets[3], whole, run(*reference, scene.pair), what + " ref");
+    }
+}
+
 TEST(Engine, AllocatesNothingAfterTheFirstFrame) {
   SyntheticSetup synthetic;
   synthetic.size = {320, 240};

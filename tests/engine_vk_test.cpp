@@ -111,6 +111,23 @@ TEST(VulkanEngine, KeepsPairsInFlightInOrder) {
   expect_same_frame(run(*reference, scenes[2].pair), vulkan->collect(), "third");
 }
 
+// Windows belong to the pair submitted after them, also while another one is in flight.
+TEST(VulkanEngine, CutsTheWindowsOfEachPair) {
+  const SyntheticPair scenes[] = {room(), room(5)};
+  const duo::Setup setup = setup_for(scenes[0]);
+  OwnDevice device;
+  const auto reference = prepared(make_ref_engine(), setup), vulkan = prepared(device.engine(), setup);
+  const Window window[] = {{20, 10, 30, 20}};
+  vulkan->look_at(window);
+  vulkan->submit(scenes[0].pair);
+  vulkan->look_at({});
+  vulkan->submit(scenes[1].pair);
+  reference->look_at(window);
+  expect_same_frame(run(*reference, scenes[0].pair), vulkan->collect(), "in a window");
+  reference->look_at({});
+  expect_same_frame(run(*reference, scenes[1].pair), vulkan->collect(), "whole");
+}
+
 TEST(VulkanEngine, SendsOnlyWhatIsWanted) {
   const SyntheticPair scene = room();
   duo::Setup setup = setup_for(scene);

@@ -1,6 +1,8 @@
 // duoptic depth: pictures or videos in, disparity, depth and points out.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -26,16 +28,48 @@ constexpr char kFooter[] =
     "  duoptic depth left.png right.png --max-disparity 64 -o out          a rectified pair\n"
     "  duoptic depth left.avi right.avi --rig rig.json --every 10 -o out   raw webcam videos, every tenth frame\n"
     "  duoptic depth left.avi right.avi --rig rig.json --near 0.5 -o out   everything farther than half a metre\n"
-    "  duoptic depth both.png --preset thesis                              both views side by side in one file";
+    "  duoptic depth both.png --preset thesis                              both views side by side in one file\n"
+    "  duoptic depth left.png right.png --window 200,120,160,160 -o out    only there, the same values, sooner";
 
 struct Options {
   std::string left, right, rig, folder = "duoptic_out";
   int max_disparity = 128;
   double near_m = 0;  // 0: max_disparity says how far to search
   std::int64_t every = 1;
+  std::vector<std::string> windows;
   bool confidence = false, keep_rows = false, json = false, quiet = false;
   EngineOptions engine;
 };
+
+/// "X,Y,W,H" as columns [X, X + W) of rows [Y, Y + H).
+Window parse_window(const std::string& text) {
+  int values[4] = {}, n = 0;
+  const char *at = text.data(), *const end = at + text.size();
+  for (; n < 4; ++n) {
+    const auto [rest, error] = std::from_chars(at, end, values[n]);
+    if (error != std::errc() || (rest != end && *rest != ',') || (rest == end) != (n == 3)) break;
+    at = rest + (rest != end);
+  }
+  const Window window{values[0], values[1], values[2], values[3]};
+  if (n < 4 || window.empty() || values[0] < 0 || values[1] < 0 ||
+      std::max({values[0], values[1], values[2], values[3]}) > 1 << 20)
+    throw CLI::ValidationError("--window", fmt::format("'{}' is not X,Y,W,H with a corner >= 0 and a size >= 1 px", text));
+  return window;
+}
+
+/// Tells the engine; each window has to have a part in the picture, or who asked is mistaken.
+Result<void> look_at(Engine& engine, const Options& options, Size size) {
+  std::vector<Window> windows;
+  for (const std::string& text : options.windows) {
+    windows.push_back(parse_window(text));
+    if (windows.back().within(size).empty())
+      return Error{ErrorCode::kBadInput,
+                   fmt::format("look at --window {}: it lies outside the rectified left picture, which is {}x{}", text,
+                               size.width, size.height)};
+  }
+  engine.look_at(windows);
+  return {};
+}
 
 struct Summary {
   std::vector<double> ms;
@@ -151,6 +185,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(setup.rows, rows_of(options, setup, input.pairs->live()));
   DUO_TRY_ASSIGN(const auto engine, make_engine(options.engine.engine, options.engine.threads));
   DUO_TRY(engine->prepare(setup));
+  DUO_TRY(look_at(*engine, options, engine->rectified() ? engine->rectified()->size : setup.size));
   DUO_TRY_ASSIGN(const Summary summary, process(*input.pairs, *engine, options, app));
   print(summary, *engine, options, setup);
   if (!summary.warning.empty()) say(app, "warning: " + summary.warning);
@@ -182,6 +217,16 @@ Command add(CLI::App& app) {
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
       ->capture_default_str();
+  sub->add_option("--window", options->windows,
+                  "Only these pixels of the rectified left picture matter, with the values they would have without it; may be "
+                  "repeated")
+      ->type_name("X,Y,W,H")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            parse_window(text);
+            return std::string();
+          },
+          ""));
   options->engine.add_to(*sub);
   sub->add_flag("--confidence", options->confidence,
                 "Write confidence.png, too: 1 doubtful .. 255 sure, 0 = unknown (matcher sgm)");

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "duoptic/result.h"
 #include "duoptic/rig.h"
 #include "duoptic/row_offsets.h"
+#include "duoptic/window.h"
 
 namespace duo {
 
@@ -62,6 +64,10 @@ class Engine {
   virtual Result<void> prepare(const Setup& setup) = 0;
   /// How many pairs may be submitted before the first of them is collected.
   virtual int in_flight() const { return 1; }
+  /// Only these windows of the left rectified picture matter from the next submit() on; none: all of it. Inside them disparity,
+  /// origin, confidence and depth are the same, bit for bit, as of the whole picture; outside there are none. Engine simd with
+  /// matcher sgm leaves out the rows they do not depend on; where all is computed anyway they only cut it out.
+  virtual void look_at(std::span<const Window> windows) = 0;
   /// Starts work on a pair of the size given to prepare(); the pair must live until its collect() returns.
   virtual void submit(const Pair& pair) = 0;
   /// The finished frame of the oldest pair submitted. It stays as it is until the frame after the next is made: what comes

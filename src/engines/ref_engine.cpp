@@ -7,6 +7,7 @@
 #include "core/check.h"
 #include "core/clock.h"
 #include "engines/engines.h"
+#include "engines/keep_windows.h"
 #include "engines/prepared.h"
 #include "matchers/pyramid/pyramid.h"
 #include "matchers/sgm/sgm.h"
@@ -41,6 +42,8 @@ class RefEngine final : public Engine {
     return {};
   }
 
+  void look_at(std::span<const Window> windows) override { windows_.assign(windows.begin(), windows.end()); }
+
   void submit(const Pair& pair) override {
     DUO_CHECK(matcher_.index() != 0);
     DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
@@ -64,6 +67,7 @@ class RefEngine final : public Engine {
       std::get<ref::Sgm>(matcher_).match(gray, {disparity.d_q4, frame.confidence}, timer_);
     ref::mark_measured(disparity.d_q4, disparity.origin);
     if (setup.fill) fill(frame);
+    keep_windows(windows_, frame);
     timer_.stage("fill");
     if (setup.wants.depth) ref::depth(disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
     timer_.stage("depth");
@@ -112,6 +116,7 @@ class RefEngine final : public Engine {
   Pool pool_{1};  // colour for display is resampled by the same code in every engine
   Prepared prepared_;
   std::variant<std::monostate, ref::Pyramid, ref::Sgm> matcher_;
+  std::vector<Window> windows_;
   std::array<Frame, 2> frames_;  // the last one stays as it is while the next is made
   unsigned current_ = 0;
   Image<std::uint16_t> unsmoothed_;  // disparities just filled

@@ -8,6 +8,7 @@
 #include "core/check.h"
 #include "core/clock.h"
 #include "engines/engines.h"
+#include "engines/keep_windows.h"
 #include "engines/prepared.h"
 #include "matchers/pyramid/pyramid.h"
 #include "matchers/sgm/sgm.h"
@@ -45,6 +46,8 @@ class SimdEngine final : public Engine {
     return {};
   }
 
+  void look_at(std::span<const Window> windows) override { windows_.assign(windows.begin(), windows.end()); }
+
   void submit(const Pair& pair) override {
     DUO_CHECK(matcher_.index() != 0);
     DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
@@ -63,14 +66,18 @@ class SimdEngine final : public Engine {
     timer_.stage("color");
     prepare_view(pair.right, maps ? &maps->right : nullptr, frame.right, frame.right_inside);
 
+    const int height = prepared_.size.height;
+    const RowBand shown = RowBand::of(windows_, prepared_.size);
+    const RowBand matched = setup.fill ? shown.grown(WeightedMedian::kRadius, height) : shown;
     Disparity& disparity = frame.disparity;
     const GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside};
     if (auto* pyramid = std::get_if<simd::Pyramid>(&matcher_))
       pyramid->match(gray, disparity.d_q4, timer_);
     else
-      std::get<simd::Sgm>(matcher_).match(gray, {disparity.d_q4, frame.confidence}, timer_);
+      std::get<simd::Sgm>(matcher_).match(gray, {disparity.d_q4, frame.confidence}, timer_, matched);
     simd::mark_measured(pool_, disparity.d_q4, disparity.origin);
-    if (setup.fill) fill(frame);
+    if (setup.fill) fill(frame, shown);
+    keep_windows(windows_, frame);
     timer_.stage("fill");
     if (setup.wants.depth) simd::depth(pool_, disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
     timer_.stage("depth");
@@ -102,11 +109,11 @@ class SimdEngine final : public Engine {
   }
 
   /// What was filled takes the disparity of those filled or measured pixels around it that look like it.
-  void fill(Frame& frame) {
+  void fill(Frame& frame, RowBand rows) {
     Disparity& disparity = frame.disparity;
     simd::fill(pool_, disparity.d_q4, disparity.origin);
     disparity.d_q4.swap(unsmoothed_);
-    simd::weighted_median(pool_, {unsmoothed_, frame.left, disparity.origin}, *smooth_scratch_, disparity.d_q4);
+    simd::weighted_median(pool_, {unsmoothed_, frame.left, disparity.origin, rows}, *smooth_scratch_, disparity.d_q4);
   }
 
   void prepare_color(const Picture& picture, const Rectification* maps, Image<Rgb8>& out) {
@@ -117,6 +124,7 @@ class SimdEngine final : public Engine {
   Pool pool_;
   Prepared prepared_;
   std::variant<std::monostate, simd::Pyramid, simd::Sgm> matcher_;
+  std::vector<Window> windows_;
   std::array<Frame, 2> frames_;  // the last one stays as it is while the next is made
   unsigned current_ = 0;
   std::optional<simd::WeightedMedianScratch> smooth_scratch_;

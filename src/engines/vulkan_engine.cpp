@@ -9,6 +9,7 @@
 
 #include "core/check.h"
 #include "engines/engines.h"
+#include "engines/keep_windows.h"
 #include "engines/vulkan_frames.h"
 
 namespace duo {
@@ -48,11 +49,14 @@ class VulkanEngine final : public Engine {
     return {};
   }
 
+  void look_at(std::span<const Window> windows) override { windows_.assign(windows.begin(), windows.end()); }
+
   void submit(const Pair& pair) override {
     DUO_CHECK(prepared_ != nullptr && count_ < vk::Frames::kInFlight);
     DUO_CHECK(pair.left.pixels.size() == prepared_->setup.size && pair.right.pixels.size() == prepared_->setup.size);
     const int slot = (first_ + count_++) % slots_;
     pairs_[static_cast<std::size_t>(slot)] = &pair;
+    windows_of_[static_cast<std::size_t>(slot)] = windows_;
     if (unseen_) go_on_with_cpu(why_unseen_);
     if (work_ == nullptr) return;
     if (const auto started = work_->submit(slot, pair); !started) go_on_with_cpu(started.error());
@@ -72,11 +76,13 @@ class VulkanEngine final : public Engine {
         frame.sequence = pair.sequence;
         frame.t_ns = pair.left.t_ns;
         frame.skew_ns = pair.right.t_ns - pair.left.t_ns;
+        keep_windows(windows_of_[static_cast<std::size_t>(slot)], frame);
         if (work_->observers() != nullptr) frame.observer = &observers_[static_cast<std::size_t>(slot)];
         return frame;
       }
       go_on_with_cpu(done.error());
     }
+    cpu_->look_at(windows_of_[static_cast<std::size_t>(slot)]);
     cpu_->submit(pair);
     return cpu_->collect();
   }
@@ -141,6 +147,8 @@ class VulkanEngine final : public Engine {
   std::array<Frame, 2> frames_;       // the last one stays as it is while the next is made
   unsigned current_ = 0;
   std::array<const Pair*, vk::Frames::kSlots> pairs_{};  // in flight: count_ of them from first_
+  std::vector<Window> windows_;                          // of the next submit
+  std::array<std::vector<Window>, vk::Frames::kSlots> windows_of_;
   int first_ = 0, count_ = 0, slots_ = vk::Frames::kInFlight;
   std::string event_;
   std::mutex observing_;              // held while someone looks, and while work_ changes

@@ -115,6 +115,22 @@ TEST_F(Cli, EnginesAndThreadsAgreeToTheByte) {
   }
 }
 
+TEST_F(Cli, AWindowHasTheWholePicturesDepthAndNothingAround) {
+  const std::string both = "depth left.png right.png --rig rig.json --max-disparity 24 -o ";
+  ASSERT_EQ(run(both + "whole").exit, 0);
+  ASSERT_EQ(run(both + "part --window 60,40,30,20 --window 100,100,90,90").exit, 0);
+  const auto whole = read_png16(at("whole/depth.png")), part = read_png16(at("part/depth.png"));
+  ASSERT_TRUE(whole && part);
+  int known = 0;
+  for (int y = 0; y < whole->height(); ++y)
+    for (int x = 0; x < whole->width(); ++x) {
+      const bool inside = (x >= 60 && x < 90 && y >= 40 && y < 60) || (x >= 100 && y >= 100);
+      EXPECT_EQ(part->at(y, x), inside ? whole->at(y, x) : 0) << x << "," << y;
+      known += part->at(y, x) != 0;
+    }
+  EXPECT_GT(known, 300);
+}
+
 TEST_F(Cli, VideosGiveAFolderAFrame) {
   test::write_video(at("v.avi"), AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P, 0);
   const Ended ended = run("depth v.avi v.avi --max-disparity 16 --every 5 -o out --quiet");
@@ -185,6 +201,9 @@ TEST_F(Cli, BadOptions) {
   expect_failure(pair + "--threads 0", kUsage, "--threads");
   expect_failure(pair + "--every 0", kUsage, "--every");
   expect_failure(pair + "--what", kUsage, "--what");
+  for (const char* window : {"1,2,3", "1,2,3,4,5", "1,2,3,", "1,2,0,4", "-1,2,3,4", "a,b,c,d", "1,2,3,4x", "1,2,3,99999999999"})
+    expect_failure(pair + "--window=" + window, kUsage, std::string(window) + "' is not X,Y,W,H");
+  expect_failure(pair + "--window 160,0,5,5", kInput, "outside the rectified left picture, which is 160x120");
   expect_failure("depth -o out", kUsage, "LEFT");
   expect_failure("", kUsage, "subcommand");
   expect_failure("eval middlebury nowhere", kInput, "nowhere");

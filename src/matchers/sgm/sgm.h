@@ -57,7 +57,8 @@ namespace simd {
 class Sgm {
  public:
   Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup);
-  void match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer);
+  /// The same in `rows`; none in all others. Saves most of what these would take.
+  void match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer, RowBand rows = {});
 
  private:
   Pool& pool_;

@@ -1,5 +1,7 @@
 #include "matchers/sgm/sgm.h"
 
+#include <algorithm>
+
 #include "stages/balance/balance.h"
 #include "stages/bilateral/bilateral.h"
 #include "stages/check_left_right/check_left_right.h"
@@ -19,7 +21,14 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
       speckle_scratch_(setup.size),
       smooth_scratch_(setup.size) {}
 
-void Sgm::match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer) {
+void Sgm::match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer, RowBand rows) {
+  // What the result depends on: taps of the median; islands, which are smaller than `speckle` pixels where they matter; paths
+  // from above, and with paths from below the whole picture.
+  const int h = pair.size().height;
+  rows = rows.within(h);
+  const RowBand checked_rows = params_.smooth != 0 ? rows.grown(WeightedMedian::kRadius, h) : rows;
+  const RowBand joined = checked_rows.grown(params_.speckle, h);
+  const int plane_rows = params_.semi_global().upward ? h : joined.end;
   simd::balance(pool_, pair, maps_.balanced);
   timer.stage("balance");
   const int noise_q4 = params_.soften != 0 ? simd::noise_q4(pool_, pair.left, pair.right) : 0;
@@ -27,23 +36,26 @@ void Sgm::match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer) {
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
     if (noise_q4 > 0) simd::bilateral(pool_, gray, bilateral_range(noise_q4), maps_.softened);
     timer.stage("bilateral");
-    simd::match_planes(pool_, noise_q4 > 0 ? maps_.softened.view() : gray, inside, census_dead_zone(noise_q4), out);
+    simd::match_planes(pool_, noise_q4 > 0 ? maps_.softened.view() : gray, inside, census_dead_zone(noise_q4), plane_rows, out);
     timer.stage("match_planes");
   };
   planes(pair.left, pair.left_inside, left_);
   planes(maps_.balanced, pair.right_inside, right_);
-  const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, params_.semi_global()};
+  const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, params_.semi_global(), joined};
   simd::semi_global(pool_, in, scratch_, {maps_.left_winner, maps_.right_winner, maps_.fine, out.confidence});
   timer.stage("semi_global");
   // The weighted median writes to another image than it reads: the check starts in the one from which it ends in d_q4.
   const View<std::uint16_t> checked = params_.smooth != 0 ? maps_.checked.view() : out.d_q4;
-  simd::check_left_right(
-      pool_, {maps_.left_winner, maps_.right_winner, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach},
-      maps_.fine, checked);
+  simd::check_left_right(pool_,
+                         {joined.of<const std::int16_t>(maps_.left_winner), joined.of<const std::int16_t>(maps_.right_winner),
+                          joined.of(pair.left_inside), joined.of(pair.right_inside), params_.tolerance, params_.reach},
+                         joined.of<const std::uint16_t>(maps_.fine), joined.of(checked));
   timer.stage("check_left_right");
-  simd::remove_speckle(pool_, checked, params_.speckle_step_q4, params_.speckle, speckle_scratch_);
+  simd::remove_speckle(pool_, joined.of(checked), params_.speckle_step_q4, params_.speckle, speckle_scratch_);
   timer.stage("speckle");
-  if (params_.smooth != 0) simd::weighted_median(pool_, {checked, in.left.value[0]}, smooth_scratch_, out.d_q4);
+  if (params_.smooth != 0) simd::weighted_median(pool_, {checked, in.left.value[0], {}, rows}, smooth_scratch_, out.d_q4);
+  for (int y = 0; y < h; ++y)
+    if (y < rows.begin || y >= rows.end) std::fill_n(out.d_q4.row(y), out.d_q4.width(), Disparity::kNone);
   if (!out.confidence.empty()) keep_confidence(out.d_q4, out.confidence);
   timer.stage("weighted_median");
 }

@@ -31,7 +31,9 @@ namespace ref {
 void match_planes(View<const std::uint8_t> gray, View<const std::uint8_t> inside, int dead_zone, PlaneImages& out);
 }
 namespace simd {
-void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uint8_t> inside, int dead_zone, PlaneImages& out);
-}
+/// Of the rows from the top as many as `rows`; others may hold anything.
+void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uint8_t> inside, int dead_zone, int rows,
+                  PlaneImages& out);
+}  // namespace simd
 
 }  // namespace duo

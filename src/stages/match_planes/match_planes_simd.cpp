@@ -92,11 +92,13 @@ void outside_row(View<const std::uint8_t> inside, int y, std::uint8_t* columns, 
 
 }  // namespace
 
-void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uint8_t> inside, int dead_zone, PlaneImages& out) {
+void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uint8_t> inside, int dead_zone, int rows_wanted,
+                  PlaneImages& out) {
   DUO_CHECK(gray.size() == out.size && (inside.empty() || inside.size() == out.size) && out.pad >= PlaneImages::kPadRight);
   const int w = gray.width(), h = gray.height(), pad = out.pad;
+  const auto first = [&](int more) { return std::min(rows_wanted + more, h); };
   const auto row = [&](View<std::uint8_t> plane, int y) { return plane.row(std::clamp(y, 0, h - 1)) + pad; };
-  pool.rows(h, [&](int begin, int end) {
+  pool.rows(first(3), [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
       std::copy_n(gray.row(y), w, row(out.value[0], y));
       out.continue_row(out.value[0], y);
@@ -107,7 +109,7 @@ void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uin
       out.continue_row(out.outside, y);
     }
   });
-  pool.rows(h, [&](int begin, int end) {
+  pool.rows(first(1), [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
       const std::uint8_t* rows[5];
       for (int i = 0; i < 5; ++i) rows[i] = row(out.value[0], y + i - 2);
@@ -117,7 +119,7 @@ void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uin
         out.continue_row(plane, y);
     }
   });
-  pool.rows(h, [&](int begin, int end) {
+  pool.rows(first(0), [&](int begin, int end) {
     for (int y = begin; y < end; ++y)
       for (std::size_t c = 0; c < MatchPlanes::kChannels; ++c) {
         HWY_DYNAMIC_DISPATCH(interval_row)

@@ -64,7 +64,7 @@ TEST(MatchPlanes, SimdAgrees) {
         ref::match_planes(gray.view, mask, dead_zone, want);
         test::each_target([&](const std::string& target) {
           PlaneImages got(size, 64);
-          simd::match_planes(two, gray.view, mask, dead_zone, got);
+          simd::match_planes(two, gray.view, mask, dead_zone, size.height, got);
           for (std::size_t i = 0; i < 2; ++i)
             test::expect_same<std::uint8_t>(want.census[i], got.census[i], "census " + target);
           for (std::size_t i = 0; i < 3; ++i) {

@@ -9,6 +9,7 @@
 
 #include "core/match_planes.h"
 #include "core/pool.h"
+#include "core/row_band.h"
 #include "duoptic/frame.h"
 
 namespace duo {
@@ -56,6 +57,7 @@ struct SemiGlobal {
   MatchPlanes left, right;
   int max_disparity = 0;  // 1 .. 256
   SemiGlobalParams params;
+  RowBand rows = {};  // where the outputs are needed; in others they may hold anything, and only paths pass
 };
 struct SemiGlobalMatch {
   View<std::int16_t> left, right;

@@ -36,6 +36,7 @@ struct Sweep {
   int thread, threads;
   bool up;
   int w, h, lanes, first;  // first: lane of the first vector that holds a disparity
+  int passed, count;       // rows that paths only pass before those wanted, and rows up to the last wanted
   int ahead;               // pixels that a row gets ahead of the next one: with all threads at work, half of what it could
   std::uint8_t p2[256];
   HWY_ALIGN_MAX std::uint8_t unused[kGap];  // 255 in the lanes of that vector which hold none
@@ -52,6 +53,9 @@ struct Sweep {
         lanes(s.lanes) {
     const int n = static_cast<int>(hn::Lanes(D()));
     first = (lanes - in.max_disparity) / n * n;
+    const RowBand rows = in.rows.within(h);
+    passed = up ? h - rows.end : rows.begin;
+    count = up ? h - rows.begin : rows.end;
     ahead = std::max(1, w / (2 * threads * kBlock)) * kBlock;
     for (int i = 0; i < 256; ++i) p2[i] = static_cast<std::uint8_t>(in.params.p2_at(i));
     for (int j = 0; j < kGap; ++j) unused[j] = first + j < lanes - in.max_disparity ? 255 : 0;
@@ -87,11 +91,16 @@ void zero_cell(const Sweep& sweep, std::uint8_t* costs) {
   std::memset(costs + sweep.first, 0, static_cast<std::size_t>(sweep.lanes - sweep.first));
 }
 
+/// What a row's walk is for: its sums of paths from below; all but the last path, before the winners; only the paths to the
+/// next row.
+enum class Walk { kUp, kDown, kPassing };
+
 /// A row on its way from left to right.
-template <bool kUp, bool kDiagonals>
+template <Walk kWalk, bool kDiagonals>
 class Along {
  public:
   static constexpr int kPaths = kDiagonals ? 3 : 1;
+  static constexpr bool kUp = kWalk == Walk::kUp, kDown = kWalk == Walk::kDown;
 
   Along(const Sweep& sweep, int i, Scratch::Row& row)
       : sweep_(sweep),
@@ -112,7 +121,7 @@ class Along {
     before_ = row.along.row(0) + kGap;
     zero_cell(sweep, before_);
     here_ = row.along.row(1) + kGap;
-    if (kUp || sweep.in.params.upward) upward_ = s.upward.row(y);
+    if (kUp || (kDown && sweep.in.params.upward)) upward_ = s.upward.row(y);
   }
 
   /// Costs of a block of pixels. By themselves, as nothing here waits for the pixel before: mixed with the paths they take
@@ -144,7 +153,7 @@ class Along {
     std::uint8_t *const here = here_, *const sums = (kUp ? upward_ : row_.sums.row(0)) + cell,
                         *const costs = row_.costs.row(0) + cell;
     std::uint8_t* const paths[3] = {paths_[0] + x * stride, paths_[kPaths / 2] + x * stride, paths_[kPaths - 1] + x * stride};
-    const std::uint8_t* const below = !kUp && upward_ != nullptr ? upward_ + cell : nullptr;
+    const std::uint8_t* const below = kDown && upward_ != nullptr ? upward_ + cell : nullptr;
     if (below != nullptr && x + kFetchAhead < sweep_.w)
       for (int j = first / kLine * kLine; j < lanes; j += kLine) hwy::Prefetch(below + kFetchAhead * lanes + j);
     auto least_left = set(255);
@@ -152,7 +161,7 @@ class Along {
     for (int j = first; j < lanes; j += n) {
       const auto cost = hn::Load(d, costs + j);
       auto sum = hn::Zero(d);
-      if (!kUp) {
+      if (kDown) {
         sum = from_left.step(j, cost);
         hn::Store(sum, d, here + j);
         least_left = hn::Min(least_left, sum);
@@ -164,7 +173,8 @@ class Along {
         least_above[k] = hn::Min(least_above[k], l);
         sum = hn::SaturatedAdd(sum, l);
       }
-      kUp ? hn::Stream(sum, d, sums + j) : hn::Store(sum, d, sums + j);  // up: not needed for long
+      if (kUp) hn::Stream(sum, d, sums + j);  // not needed for long
+      if (kDown) hn::Store(sum, d, sums + j);
     }
     const int pair = least(d, least_left, least_above[0]);
     least_ = static_cast<std::uint8_t>(first_of(pair));
@@ -307,14 +317,27 @@ class Back {
   std::uint8_t least_ = 0;
 };
 
+template <bool kDiagonals>
+void pass(const Sweep& sweep, int i, Scratch::Row& row) {
+  Along<Walk::kPassing, kDiagonals> along(sweep, i, row);
+  for (int begin = 0; begin < sweep.w; begin += kBlock) {
+    const int end = std::min(begin + kBlock, sweep.w);
+    if (i > 0) sweep.wait_for(i - 1, std::min(end + 1, sweep.w));
+    along.costs(begin, end);
+    for (int x = begin; x < end; ++x) along.pixel(x);
+    sweep.finished(i, end);
+  }
+}
+
 /// A thread walks along one row and back along its last one at the same time: each pixel of a path waits for the pixel before,
 /// and two such chains fill each other's waiting.
 template <bool kUp, bool kDiagonals>
 void run(const Sweep& sweep) {
   const std::size_t rows = 2 * static_cast<std::size_t>(sweep.thread);
-  int last = -1, turn = 0;
-  for (int i = sweep.thread; i < sweep.h; i += sweep.threads, turn ^= 1) {
-    Along<kUp, kDiagonals> along(sweep, i, sweep.s.rows[rows + static_cast<std::size_t>(turn)]);
+  int last = -1, turn = 0, i = sweep.thread;
+  for (; i < sweep.passed; i += sweep.threads) pass<kDiagonals>(sweep, i, sweep.s.rows[rows]);
+  for (; i < sweep.count; i += sweep.threads, turn ^= 1) {
+    Along<kUp ? Walk::kUp : Walk::kDown, kDiagonals> along(sweep, i, sweep.s.rows[rows + static_cast<std::size_t>(turn)]);
     Back back(sweep, std::max(last, 0), sweep.s.rows[rows + static_cast<std::size_t>(turn ^ 1)]);
     for (int begin = 0; begin < sweep.w; begin += kBlock) {
       const int end = std::min(begin + kBlock, sweep.w);

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/pool.h"
+#include "core/row_band.h"
 #include "duoptic/frame.h"
 
 namespace duo {
@@ -33,6 +34,7 @@ struct WeightedMedian {
   View<const std::uint16_t> d_q4;
   View<const std::uint8_t> guide;
   View<const std::uint8_t> origin = {};
+  RowBand rows = {};  // of dst that are needed; others may hold anything
 };
 
 namespace ref {

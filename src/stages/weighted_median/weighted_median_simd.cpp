@@ -193,13 +193,14 @@ void weighted_median(Pool& pool, const WeightedMedian& in, WeightedMedianScratch
             (in.origin.empty() || in.origin.size() == dst.size()));
   DUO_CHECK(scratch.size == dst.size());
   const auto pad = HWY_DYNAMIC_DISPATCH(pad_row);
-  pool.rows(dst.height(), [&](int begin, int end) {
-    for (int y = begin; y < end; ++y)
+  const RowBand rows = in.rows.within(dst.height()), taps = in.rows.grown(kRadius, dst.height());
+  pool.rows(taps.count(), [&](int begin, int end) {
+    for (int y = taps.begin + begin; y < taps.begin + end; ++y)
       pad(in.d_q4.row(y), in.guide.row(y), dst.width(), scratch.values.row(y) + kPadLeft, scratch.guide.row(y) + kPadLeft);
   });
   // Windows reach six rows up and down: only now are all of them there.
   const auto smooth = HWY_DYNAMIC_DISPATCH(smooth_rows);
-  pool.rows(dst.height(), [&](int begin, int end) { smooth(in, scratch, dst, begin, end); });
+  pool.rows(rows.count(), [&](int begin, int end) { smooth(in, scratch, dst, rows.begin + begin, rows.begin + end); });
 }
 
 }  // namespace simd
