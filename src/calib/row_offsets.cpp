@@ -125,11 +125,20 @@ Rectification row_maps(const RowOffsets& rows) {
   Rectification out;
   const auto [w, h] = rows.size;
   out.geometry.size = rows.size;
-  for (ResampleMap* map : {&out.left, &out.right}) {
-    *map = {Image<std::uint32_t>(rows.size), Image<std::uint16_t>(rows.size), map == &out.right};
-    for (int y = 0; y < h; ++y)
-      for (int x = 0; x < w; ++x) put_place(*map, y, x, {double(x), map == &out.left ? y : y + rows.at(x, y)}, rows.size);
-  }
+  using Columns = ResampleMap::Columns;
+  out.left = {Image<std::uint32_t>(rows.size), Image<std::uint16_t>(rows.size), Columns::kSoft};
+  out.right = {Image<std::uint32_t>(rows.size), Image<std::uint16_t>(rows.size), Columns::kCubic};
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      put_place(out.right, y, x, {double(x), y + rows.at(x, y)}, rows.size);
+      put_place(out.left, y, x, {double(x), double(y)}, rows.size);
+      // The left picture stays where it is, and is blurred like the right one there.
+      const std::uint32_t column = out.left.corner.at(y, x) & 0xFFFF0000;
+      const auto across = static_cast<std::uint16_t>(out.left.fraction_q8.at(y, x) & 0xFF00);
+      const bool seen = out.right.corner.at(y, x) != ResampleMap::kOutside;
+      out.left.corner.at(y, x) = column | static_cast<std::uint32_t>(y);
+      out.left.fraction_q8.at(y, x) = across | static_cast<std::uint16_t>(seen ? out.right.fraction_q8.at(y, x) & 0xFF : 0);
+    }
   return out;
 }
 

@@ -116,6 +116,29 @@ TEST(RowOffsets, MatchingFindsRowsThatArePutRight) {
   EXPECT_GT(right_share(*engine, pair), 0.9);
 }
 
+// The left picture stays where it is, to its last row and column; only its gray rows are blurred a little.
+TEST(RowOffsets, TheLeftPictureStays) {
+  Pair pair = textured({64, 48}, 0);
+  duo::Setup setup;
+  setup.size = {64, 48};
+  setup.max_disparity = 16;
+  setup.rows = RowOffsets{setup.size, {0.5}, -1, 1, 100, 0.5, 0.1};
+  setup.wants.color = true;
+  for (const char* name : {"ref", "simd"}) {
+    const auto engine = *make_engine(name, 1);
+    ASSERT_TRUE(engine->prepare(setup));
+    engine->submit(pair);
+    const Frame& frame = engine->collect();
+    for (int y = 0; y < 48; ++y)
+      for (int x = 0; x < 64; ++x) {
+        const Rgb8 &want = pair.left.pixels.at(y, x), &got = frame.color.at(y, x);
+        EXPECT_TRUE(want.r == got.r && want.g == got.g && want.b == got.b) << name << " " << x << "," << y;
+        EXPECT_EQ(frame.left_inside.at(y, x), 255);
+        EXPECT_NEAR(frame.left.at(y, x), want.g, 10) << name << " " << x << "," << y;
+      }
+  }
+}
+
 TEST(RowOffsets, EnginesRefuseThoseOfOtherPictures) {
   const auto engine = *make_engine("simd", 1);
   duo::Setup setup;

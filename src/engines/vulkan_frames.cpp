@@ -100,7 +100,7 @@ Result<void> Frames::make_view(ViewMaps& view, const char* name, const ResampleM
   DUO_TRY(make_map<std::uint8_t>(device_, name, raw, view.gray));
   DUO_TRY(make_map<std::uint8_t>(device_, name, raw, view.denoised));
   if (map == nullptr) return {};
-  view.cubic_height = map->cubic ? raw.height : 0;
+  view.columns = map->columns;
   DUO_TRY_ASSIGN(view.corner, sent(device_, name, map->corner));
   DUO_TRY_ASSIGN(view.fraction_q8, sent(device_, name, map->fraction_q8));
   DUO_TRY_ASSIGN(view.inside, sent(device_, name, inside_of(*map, raw)));
@@ -209,8 +209,11 @@ void Frames::record_downloads(Slot& slot, BufferView<std::uint8_t> left, BufferV
   Recorder& recorder = *slot.recorder;
   const Observers::Maps& maps = maps_of(slot);
   if (prepared_.color && rectifies()) {
-    rectify_.record(recorder, whole<Rgb8>(views_[0].raw, prepared_.setup.size), map_of(views_[0]),
-                    whole<Rgb8>(maps.color, prepared_.size), prepared_.size);
+    if (views_[0].columns == ResampleMap::Columns::kSoft)
+      recorder.copy(views_[0].raw, maps.color, maps.color.bytes());
+    else
+      rectify_.record(recorder, whole<Rgb8>(views_[0].raw, prepared_.setup.size), map_of(views_[0]),
+                      whole<Rgb8>(maps.color, prepared_.size), prepared_.size);
     recorder.stage("color");
   }
   const auto down = [&](const Buffer& from, const Buffer& to) {
@@ -231,7 +234,7 @@ const Observers::Maps& Frames::maps_of(const Slot& slot) const {
 
 Rectify::Map Frames::map_of(const ViewMaps& view) const {
   return {whole<std::uint32_t>(view.corner, prepared_.size), whole<std::uint16_t>(view.fraction_q8, prepared_.size),
-          view.cubic_height};
+          view.columns, prepared_.setup.size.height};
 }
 
 Result<void> Frames::submit(int slot, const Pair& pair) {

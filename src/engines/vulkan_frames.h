@@ -53,7 +53,7 @@ class Frames {
   /// One camera's pictures on their way to what the matcher sees.
   struct ViewMaps {
     Buffer raw, gray, denoised, inside, corner, fraction_q8;
-    int cubic_height = 0;  // as in Rectify::Map
+    ResampleMap::Columns columns = ResampleMap::Columns::kLinear;
   };
   struct Slot {
     std::array<Buffer, 2> raw;

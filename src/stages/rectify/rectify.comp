@@ -16,6 +16,7 @@ layout(std430, binding = 4) writeonly buffer Inside { uint8_t inside[]; };
 layout(push_constant) uniform Push { RectifyPush p; };
 
 const uint kOutside = 0xFFFFFFFF;
+const int kLinear = 0, kCubic = 1;  // ResampleMap::Columns
 
 int index(Plane plane, ivec2 at) { return plane.offset + at.y * plane.stride + at.x; }
 
@@ -27,15 +28,23 @@ uint blend(int i, uint fx, uint fy) {
   return (top * (256 - fy) + bottom * fy + 32768) >> 16;
 }
 
-// Of this channel at byte i of the raw picture, which is in row y.
-uint cubic(int i, int y, int fx, int f) {
+ivec4 cubic_weights(int f) {
   const int f2 = f * f, f3 = f2 * f, half_unit = 1 << 16;
   const int before = (-f3 + 512 * f2 - 65536 * f + half_unit) >> 17, after = (-3 * f3 + 1024 * f2 + 65536 * f + half_unit) >> 17;
   const int last = (f3 - 256 * f2 + half_unit) >> 17;
-  const ivec4 weights = ivec4(before, 256 - before - after - last, after, last);
+  return ivec4(before, 256 - before - after - last, after, last);
+}
+
+ivec4 soft_weights(int f) {
+  const int whole = f * (256 - f) >> 2, beside = (10 * whole * whole + (1 << 23)) >> 24;
+  return ivec4(beside, 256 - 2 * beside, beside, 0);
+}
+
+// Of this channel at byte i of the raw picture, which is in row y.
+uint four_rows(int i, int y, int fx, ivec4 weights) {
   int sum = 0;
   for (int k = 0; k < 4; ++k) {
-    const int at = i + kChannels * p.src.stride * (clamp(y + k - 1, 0, p.cubic_height - 1) - y);
+    const int at = i + kChannels * p.src.stride * (clamp(y + k - 1, 0, p.src_height - 1) - y);
     sum += weights[k] * (int(src[at]) * (256 - fx) + int(src[at + kChannels]) * fx);
   }
   return uint(clamp((sum + 32768) >> 16, 0, 255));
@@ -50,9 +59,14 @@ void main() {
   if (seen) {
     const int i = kChannels * index(p.src, ivec2(from >> 16, from & 0xFFFF));
     const uint fraction = uint(fraction_q8[index(p.fraction, at)]);
-    for (int c = 0; c < kChannels; ++c)
-      dst[o + c] = uint8_t(p.cubic_height != 0 ? cubic(i + c, int(from & 0xFFFF), int(fraction >> 8), int(fraction & 0xFF))
-                                        : blend(i + c, fraction >> 8, fraction & 0xFF));
+    if (p.columns == kLinear) {
+      for (int c = 0; c < kChannels; ++c) dst[o + c] = uint8_t(blend(i + c, fraction >> 8, fraction & 0xFF));
+    } else {
+      const int f = int(fraction & 0xFF);
+      const ivec4 weights = p.columns == kCubic ? cubic_weights(f) : soft_weights(f);
+      for (int c = 0; c < kChannels; ++c)
+        dst[o + c] = uint8_t(four_rows(i + c, int(from & 0xFFFF), int(fraction >> 8), weights));
+    }
   } else {
     for (int c = 0; c < kChannels; ++c) dst[o + c] = uint8_t(0);
   }

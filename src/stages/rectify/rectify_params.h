@@ -10,7 +10,8 @@ struct RectifyPush {
   Plane src, corner, fraction, dst, inside;  // src and dst in pixels
   int width, height;
   int marks_inside;  // 0 or 1: there is an inside picture to write
-  int cubic_height;  // rows of src if the map is cubic, else 0
+  int columns;       // ResampleMap::Columns
+  int src_height;    // of no matter to linear ones
 };
 
 #ifdef __cplusplus

@@ -18,8 +18,9 @@ void rectify(View<const std::uint8_t> src, const ResampleMap& map, View<std::uin
       const int x0 = static_cast<int>(corner >> 16), y0 = static_cast<int>(corner & 0xFFFF);
       const std::uint32_t fx = map.fraction_q8.at(y, x) >> 8, fy = map.fraction_q8.at(y, x) & 0xFF;
       inside.at(y, x) = 255;
-      if (map.cubic) {
-        const auto weights = cubic_weights(static_cast<int>(fy));
+      if (map.columns != ResampleMap::Columns::kLinear) {
+        const bool cubic = map.columns == ResampleMap::Columns::kCubic;
+        const auto weights = cubic ? cubic_weights(static_cast<int>(fy)) : soft_weights(static_cast<int>(fy));
         int sum = 0;
         for (int k = 0; k < 4; ++k) {
           const std::uint8_t* row = src.row(std::clamp(y0 + k - 1, 0, src.height() - 1)) + x0;

@@ -42,18 +42,35 @@ struct Place {
     return hn::Add(hn::And(products, hn::Set(d, 0xFFFF)), hn::ShiftRight<16>(products));
   }
 
-  /// From the pairs of four rows; cubic_weights() in lanes.
-  hn::Vec<hn::Rebind<std::uint8_t, D>> cubic(V before_pair, V here_pair, V after_pair, V last_pair) const {
+  using Signed = hn::Vec<hn::RebindToSigned<D>>;
+  struct Weights {
+    Signed before, here, after, last;
+  };
+  /// cubic_weights() in lanes.
+  Weights cubic() const {
     const hn::RebindToSigned<D> d;
     const auto f = hn::BitCast(d, fy), f2 = hn::Mul(f, f), f3 = hn::Mul(f2, f), linear = hn::ShiftLeft<16>(f);
     const auto rounded = [&](auto v) HWY_ATTR { return hn::ShiftRight<17>(hn::Add(v, hn::Set(d, 1 << 16))); };
     const auto before = rounded(hn::Sub(hn::Sub(hn::ShiftLeft<9>(f2), f3), linear));
     const auto after = rounded(hn::Add(hn::Sub(hn::ShiftLeft<10>(f2), hn::Mul(f3, hn::Set(d, 3))), linear));
     const auto last = rounded(hn::Sub(f3, hn::ShiftLeft<8>(f2)));
-    const auto here = hn::Sub(hn::Set(d, 256), hn::Add(before, hn::Add(after, last)));
-    const auto row = [&](V pair, auto weight) HWY_ATTR { return hn::Mul(hn::BitCast(d, across(pair)), weight); };
-    const auto sum =
-        hn::Add(hn::Add(row(before_pair, before), row(here_pair, here)), hn::Add(row(after_pair, after), row(last_pair, last)));
+    return {before, hn::Sub(hn::Set(d, 256), hn::Add(before, hn::Add(after, last))), after, last};
+  }
+  /// soft_weights() in lanes.
+  Weights soft() const {
+    const hn::RebindToSigned<D> d;
+    const auto f = hn::BitCast(d, fy), whole = hn::ShiftRight<2>(hn::Mul(f, hn::Sub(hn::Set(d, 256), f)));
+    const auto beside = hn::ShiftRight<24>(hn::Add(hn::Mul(hn::Mul(whole, whole), hn::Set(d, 10)), hn::Set(d, 1 << 23)));
+    return {beside, hn::Sub(hn::Set(d, 256), hn::Add(beside, beside)), beside, hn::Zero(d)};
+  }
+
+  /// From the pairs of four rows.
+  hn::Vec<hn::Rebind<std::uint8_t, D>> value(const Weights& weights, V before_pair, V here_pair, V after_pair,
+                                             V last_pair) const {
+    const hn::RebindToSigned<D> d;
+    const auto row = [&](V pair, Signed weight) HWY_ATTR { return hn::Mul(hn::BitCast(d, across(pair)), weight); };
+    const auto sum = hn::Add(hn::Add(row(before_pair, weights.before), row(here_pair, weights.here)),
+                             hn::Add(row(after_pair, weights.after), row(last_pair, weights.last)));
     const auto value = hn::And(hn::ShiftRight<16>(hn::Add(sum, hn::Set(d, 32768))), hn::BitCast(d, seen));
     return hn::DemoteTo(hn::Rebind<std::uint8_t, D>(), value);  // clips
   }
@@ -92,14 +109,15 @@ void rectify_rows(View<const std::uint8_t> src, const ResampleMap& map, View<std
       const auto from = hn::Min(at, hn::Set(d_signed, last_word));
       return pair(hn::Shr(hn::GatherOffset(d, words, from), hn::BitCast(d, hn::ShiftLeft<3>(hn::Sub(at, from)))));
     };
-    const auto top = pair(hn::GatherOffset(d, words, upper_at)), bottom = fetched(lower_at);
-    if (map.cubic) {
-      const auto x0 = hn::BitCast(d_signed, p.x0), step = hn::Set(d_signed, stride);
-      const auto before_at = hn::Max(hn::Sub(upper_at, step), x0);  // row 0 continues
-      const auto last_at = hn::Min(hn::Add(lower_at, step), hn::Add(x0, hn::Set(d_signed, (src.height() - 1) * stride)));
-      hn::StoreU(p.cubic(fetched(before_at), top, bottom, fetched(last_at)), d_u8, out);
+    if (map.columns == ResampleMap::Columns::kLinear) {
+      hn::StoreU(p.value(pair(hn::GatherOffset(d, words, upper_at)), fetched(lower_at)), d_u8, out);
     } else {
-      hn::StoreU(p.value(top, bottom), d_u8, out);
+      const auto x0 = hn::BitCast(d_signed, p.x0), step = hn::Set(d_signed, stride);
+      const auto end = hn::Add(x0, hn::Set(d_signed, (src.height() - 1) * stride));  // the first and the last row continue
+      const auto weights = map.columns == ResampleMap::Columns::kCubic ? p.cubic() : p.soft();
+      hn::StoreU(p.value(weights, fetched(hn::Max(hn::Sub(upper_at, step), x0)), fetched(upper_at),
+                         fetched(hn::Min(lower_at, end)), fetched(hn::Min(hn::Add(lower_at, step), end))),
+                 d_u8, out);
     }
     hn::StoreU(hn::DemoteTo(d_u8, hn::BitCast(d_signed, hn::And(p.seen, hn::Set(d, 255)))), d_u8, inside_out);
   };
@@ -189,6 +207,11 @@ void rectify(Pool& pool, View<const std::uint8_t> src, const ResampleMap& map, V
 
 void rectify(Pool& pool, View<const Rgb8> src, const ResampleMap& map, View<Rgb8> dst) {
   DUO_CHECK(dst.size() == map.corner.size());
+  if (map.columns == ResampleMap::Columns::kSoft) {
+    DUO_CHECK(src.size() == dst.size());
+    for (int y = 0; y < dst.height(); ++y) std::copy_n(src.row(y), dst.width(), dst.row(y));
+    return;
+  }
   DUO_CHECK(src.width() >= 2 && src.height() >= 2 && 3 * src.stride() * src.height() < (std::int64_t{1} << 31));
   const auto rows = HWY_DYNAMIC_DISPATCH(rectify_color_rows);
   pool.rows(dst.height(), [&](int begin, int end) { rows(src, map, dst, begin, end); });

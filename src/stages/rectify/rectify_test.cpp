@@ -1,11 +1,15 @@
 #include "stages/rectify/rectify.h"
 
 #include <chrono>
+#include <complex>
+#include <numbers>
 
 #include "tests/agree.h"
 
 namespace duo {
 namespace {
+
+using Columns = ResampleMap::Columns;
 
 struct Place {
   std::uint32_t x0, y0, fx, fy;
@@ -48,9 +52,9 @@ TEST(Rectify, CubicAlongColumns) {
     EXPECT_EQ(w[0] + w[1] + w[2] + w[3], 256) << f;
     EXPECT_NEAR(-w[0] + w[2] + 2 * w[3], f, 2) << f;  // a slope stays what it is
   }
-  const auto at = [](std::initializer_list<std::initializer_list<int>> rows, Place p) {
+  const auto at = [](std::initializer_list<std::initializer_list<int>> rows, Place p, Columns columns = Columns::kCubic) {
     ResampleMap map = one_pixel(p);
-    map.cubic = true;
+    map.columns = columns;
     Image<std::uint8_t> dst({1, 1}), inside({1, 1});
     ref::rectify(test::image<std::uint8_t>(rows), map, dst, inside);
     return static_cast<int>(dst.at(0, 0));
@@ -60,6 +64,27 @@ TEST(Rectify, CubicAlongColumns) {
   EXPECT_EQ(at({{10, 10}, {20, 20}, {40, 40}}, {0, 0, 0, 128}), 14);
   EXPECT_EQ(at({{0, 0}, {0, 0}, {250, 250}, {250, 250}}, {0, 0, 0, 128}), 0);
   EXPECT_EQ(at({{0, 0}, {40, 40}, {20, 20}}, {0, 1, 0, 128}), (0 + 360 + 180 - 20 + 8) / 16);  // the last row continues
+  // Soft: a row is itself, and half-way as much of it goes to both sides: (10 * 10 + 236 * 20 + 10 * 90) / 256 = 22.3; the
+  // first and the last row continue.
+  EXPECT_EQ(soft_weights(128), (std::array{10, 236, 10, 0}));
+  EXPECT_EQ(soft_weights(0), (std::array{0, 256, 0, 0}));
+  EXPECT_EQ(at({{10, 10}, {20, 20}, {90, 90}}, {0, 1, 0, 128}, Columns::kSoft), 22);
+  EXPECT_EQ(at({{10, 10}, {20, 40}, {90, 90}}, {0, 1, 128, 0}, Columns::kSoft), 30);
+  EXPECT_EQ(at({{100, 100}, {0, 0}}, {0, 0, 0, 128}, Columns::kSoft), 96);  // 246 / 256 of 100
+  EXPECT_EQ(at({{100, 100}, {0, 0}}, {0, 1, 0, 128}, Columns::kSoft), 4);
+}
+
+// Of a wave of five pixels, at any phase, a row that moves and one that stays leave the same.
+TEST(Rectify, SoftBlursAsTheCubic) {
+  for (int f = 0; f < 256; ++f) {
+    std::complex<double> cubic, soft;
+    for (int k = 0; k < 4; ++k) {
+      const auto wave = std::polar(1.0 / 256, 2 * std::numbers::pi / 5 * (k - 1));
+      cubic += static_cast<double>(cubic_weights(f)[static_cast<std::size_t>(k)]) * wave;
+      soft += static_cast<double>(soft_weights(f)[static_cast<std::size_t>(k)]) * wave;
+    }
+    EXPECT_NEAR(std::abs(soft), std::abs(cubic), 0.01) << f;
+  }
 }
 
 TEST(Rectify, MarksOutside) {
@@ -73,15 +98,15 @@ TEST(Rectify, MarksOutside) {
 }
 
 /// Any place of the raw picture, its last ones often, and a tenth outside.
-ResampleMap random_map(Size raw, Size size, std::mt19937& rng, bool cubic = false) {
-  ResampleMap map{Image<std::uint32_t>(size), Image<std::uint16_t>(size), cubic};
+ResampleMap random_map(Size raw, Size size, std::mt19937& rng, Columns columns = Columns::kLinear) {
+  ResampleMap map{Image<std::uint32_t>(size), Image<std::uint16_t>(size), columns};
   const auto place = [&](int length) {
     const auto last = static_cast<std::uint32_t>(length - 2);
     return rng() % 4 == 0 ? last - std::min<std::uint32_t>(last, rng() % 3) : static_cast<std::uint32_t>(rng() % (last + 1));
   };
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x) {
-      const std::uint32_t x0 = place(raw.width), y0 = place(raw.height);
+      const std::uint32_t x0 = place(raw.width), y0 = place(raw.height + (columns != Columns::kLinear));
       map.corner.at(y, x) = rng() % 10 == 0 ? ResampleMap::kOutside : x0 << 16 | y0;
       map.fraction_q8.at(y, x) = static_cast<std::uint16_t>(rng());
     }
@@ -99,7 +124,7 @@ TEST(Rectify, SimdAgrees) {
         std::vector<std::uint8_t> pixels(static_cast<std::size_t>(stride * (raw.height - 1) + raw.width));
         const View<std::uint8_t> src(pixels.data(), raw, stride);
         test::fill(src, how, rng);
-        const ResampleMap map = random_map(raw, size, rng, rng() % 2 == 0);
+        const ResampleMap map = random_map(raw, size, rng, static_cast<Columns>(rng() % 3));
         test::Tight<std::uint8_t> want(size), want_inside(size);
         ref::rectify(src, map, want.view, want_inside.view);
         test::each_target([&](const std::string& target) {

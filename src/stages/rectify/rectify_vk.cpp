@@ -16,12 +16,12 @@ Result<Kernel> make_rectify(const Device& device, const char* name, std::uint32_
 
 template <class T>
 void record_rectify(const Kernel& kernel, Recorder& recorder, BufferView<T> src, const Rectify::Map& map, BufferView<T> dst,
-                    BufferView<std::uint8_t> inside, Size size, int cubic_height) {
+                    BufferView<std::uint8_t> inside, Size size, ResampleMap::Columns columns) {
   const bool marks_inside = !inside.absent();
   DUO_CHECK(!src.absent() && map.corner.holds(size) && map.fraction_q8.holds(size) && dst.holds(size));
   DUO_CHECK(!marks_inside || inside.holds(size));
-  const RectifyPush push{src.plane,  map.corner.plane, map.fraction_q8.plane, dst.plane,   inside.plane,
-                         size.width, size.height,      marks_inside,          cubic_height};
+  const RectifyPush push{src.plane,   map.corner.plane, map.fraction_q8.plane,     dst.plane,     inside.plane, size.width,
+                         size.height, marks_inside,     static_cast<int>(columns), map.raw_height};
   // Every binding needs a buffer; the kernel does not touch the one that stands in for an absent picture.
   const Use marks = marks_inside ? writes(inside) : writes(dst);
   recorder.dispatch(kernel, push, {reads(src), reads(map.corner), reads(map.fraction_q8), writes(dst), marks},
@@ -39,11 +39,11 @@ Result<Rectify> Rectify::make(const Device& device) {
 
 void Rectify::record(Recorder& recorder, BufferView<std::uint8_t> src, const Map& map, BufferView<std::uint8_t> dst,
                      BufferView<std::uint8_t> inside, Size size) const {
-  record_rectify(gray_, recorder, src, map, dst, inside, size, map.cubic_height);
+  record_rectify(gray_, recorder, src, map, dst, inside, size, map.columns);
 }
 
 void Rectify::record(Recorder& recorder, BufferView<Rgb8> src, const Map& map, BufferView<Rgb8> dst, Size size) const {
-  record_rectify(color_, recorder, src, map, dst, {}, size, 0);
+  record_rectify(color_, recorder, src, map, dst, {}, size, ResampleMap::Columns::kLinear);
 }
 
 }  // namespace duo::vk

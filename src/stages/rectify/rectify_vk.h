@@ -12,7 +12,8 @@ class Rectify {
   struct Map {
     BufferView<std::uint32_t> corner;
     BufferView<std::uint16_t> fraction_q8;
-    int cubic_height = 0;  // rows of the raw picture if the map is cubic, else 0
+    ResampleMap::Columns columns = ResampleMap::Columns::kLinear;
+    int raw_height = 0;  // of no matter to kLinear
   };
   static Result<Rectify> make(const Device& device);
   /// `size` is that of the map; what the map says must lie inside `src`. `inside` may be absent: it is the same each time.

@@ -32,7 +32,9 @@ TEST(RectifyVk, Agrees) {
           Image<std::uint8_t> src(raw), want(size), want_inside(size);
           test::fill(src.view(), how, rng);
           ResampleMap map = random_map(size, raw, rng);
-          map.cubic = rng() % 2 == 0;
+          map.columns = static_cast<ResampleMap::Columns>(rng() % 3);
+          if (map.columns != ResampleMap::Columns::kLinear && map.corner.at(0, 0) != ResampleMap::kOutside)
+            map.corner.at(0, 0) = (map.corner.at(0, 0) & 0xFFFF0000) | static_cast<std::uint32_t>(raw.height - 1);
           ref::rectify(src, map, want, want_inside);
 
           const OnDevice<std::uint8_t> in(device, src, "raw"), out(device, size, "dst"), inside(device, size, "inside");
@@ -41,7 +43,7 @@ TEST(RectifyVk, Agrees) {
           test::run_with(
               recorder,
               [&] {
-                rectify.record(recorder, in.view(), {corner.view(), fraction.view(), map.cubic ? raw.height : 0}, out.view(),
+                rectify.record(recorder, in.view(), {corner.view(), fraction.view(), map.columns, raw.height}, out.view(),
                                inside.view(), size);
               },
               in, out, inside, corner, fraction);
