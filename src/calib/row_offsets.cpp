@@ -10,6 +10,7 @@ namespace {
 constexpr int kTerms = 6;
 constexpr std::size_t kLeastPoints = 24;
 constexpr double kWorthIt_px = 0.1;  // less is not worth the resampling
+constexpr double kBeside_px = 1;     // so far beyond the picture its last row goes on
 using Terms = Eigen::Matrix<double, kTerms, 1>;
 
 struct RowDifference {
@@ -130,7 +131,11 @@ Rectification row_maps(const RowOffsets& rows) {
   out.right = {Image<std::uint32_t>(rows.size), Image<std::uint16_t>(rows.size), Columns::kCubic};
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
-      put_place(out.right, y, x, {double(x), y + rows.at(x, y)}, rows.size);
+      // A row just beyond the picture is taken as its last one: that costs less than a row that nobody may look at, at every
+      // coarser level twice as many.
+      const double row = y + rows.at(x, y), last = h - 1;
+      const bool beside = row >= -kBeside_px && row <= last + kBeside_px;
+      put_place(out.right, y, x, {double(x), beside ? std::clamp(row, 0.0, last) : row}, rows.size);
       put_place(out.left, y, x, {double(x), double(y)}, rows.size);
       // The left picture stays where it is, and is blurred like the right one there.
       const std::uint32_t column = out.left.corner.at(y, x) & 0xFFFF0000;

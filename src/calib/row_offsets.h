@@ -9,7 +9,8 @@ namespace duo {
 
 RowOffsets fit_row_offsets(const SceneMatches& scene);
 
-/// Maps that leave the left picture as it is and take the offsets off the right one; no geometry.
+/// Maps that leave the left picture where it is and take the offsets off the right one; no geometry. Rows up to one pixel
+/// beyond the right picture are its last ones.
 Rectification row_maps(const RowOffsets& rows);
 
 }  // namespace duo

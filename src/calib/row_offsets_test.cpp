@@ -134,6 +134,7 @@ TEST(RowOffsets, TheLeftPictureStays) {
         const Rgb8 &want = pair.left.pixels.at(y, x), &got = frame.color.at(y, x);
         EXPECT_TRUE(want.r == got.r && want.g == got.g && want.b == got.b) << name << " " << x << "," << y;
         EXPECT_EQ(frame.left_inside.at(y, x), 255);
+        EXPECT_EQ(frame.right_inside.at(y, x), 255) << "half a row beyond the picture is nothing to lose";
         EXPECT_NEAR(frame.left.at(y, x), want.g, 10) << name << " " << x << "," << y;
       }
   }
