@@ -11,10 +11,11 @@ namespace duo {
 
 /// How much lower each thing lies in the right picture than in the left one: a smooth map over the right picture.
 ///
-/// Units   px; u and v run from -1 to 1 over the right picture's width and height
+/// Units   px; u and v run from -1 to 1 over the right picture's width and height; r is the distance from its middle, 1 at its
+///         left and right sides
 struct RowOffsets {
   Size size;
-  std::array<double, 6> terms_px{};    // of 1, u, v, u u, u v, v v
+  std::array<double, 7> terms_px{};    // of 1, u, v, u u, u v, v v, v r r: of what is left of a lens
   double least_px = 0, most_px = 0;    // what the points show: the map does not go beyond
   int points = 0;                      // that agree with it
   double before_px = 0, after_px = 0;  // median |row difference| of these points as they are, and with the map taken off

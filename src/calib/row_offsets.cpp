@@ -7,7 +7,7 @@
 namespace duo {
 namespace {
 
-constexpr int kTerms = 6;
+constexpr int kTerms = 7;
 constexpr std::size_t kLeastPoints = 24;
 constexpr double kWorthIt_px = 0.1;  // less is not worth the resampling
 constexpr double kBeside_px = 1;     // so far beyond the picture its last row goes on
@@ -20,7 +20,10 @@ struct RowDifference {
 
 Terms terms_at(double x_px, double y_px, Size size) {
   const double u = 2 * x_px / (size.width - 1) - 1, v = 2 * y_px / (size.height - 1) - 1;
-  return Terms(1, u, v, u * u, u * v, v * v);
+  const double y = v * size.height / size.width;  // in the units of u, for a lens's circles
+  Terms out;
+  out << 1, u, v, u * u, u * v, v * v, v * (u * u + y * y);
+  return out;
 }
 
 double median(std::vector<double> values) {
@@ -49,10 +52,11 @@ std::vector<double> off_px(const std::vector<RowDifference>& all, const Terms& f
 /// The scale of what a good match may be off: robust, but not below what matches reach.
 double scale_px(const std::vector<double>& off) { return std::max(1.5 * median(off), 0.1); }
 
-Terms fit_terms(const std::vector<RowDifference>& all) {
+Terms fit_terms(const std::vector<RowDifference>& all, int width_px) {
   constexpr int kRounds = 12;
-  // How far a nudged or ill calibrated pair may go, px: anywhere; tilted or zoomed; bent.
-  const Terms prior_px(100, 6, 6, 2, 2, 2);
+  // How far a nudged or ill calibrated pair may go, px: anywhere; tilted or zoomed; bent; undistorted as another lens.
+  Terms prior_px;
+  prior_px << 100, 6, 6, 2, 2, 2, width_px / 32.0;
   constexpr double kShared_px = 2;  // neighbours are wrong together: points count for less than their number
   Terms fit = Terms::Zero();
   fit[0] = median([&] {
@@ -94,7 +98,7 @@ RowOffsets fit_row_offsets(const SceneMatches& scene) {
     all.push_back({terms_at(match.right_px.x, match.left_px.y, scene.size), match.right_px.y - match.left_px.y});
   all = densest(std::move(all), std::max(3.0, 0.01 * scene.size.height));
   if (all.size() < kLeastPoints) return out;
-  const Terms fit = fit_terms(all);
+  const Terms fit = fit_terms(all, scene.size.width);
   const auto off = off_px(all, fit);
   const double farthest_px = 3 * scale_px(off);
   std::vector<double> before, after, seen;
