@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace duo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-// Not wider: vectors of 64 bytes took the same time.
-using D = hn::CappedTag<std::uint8_t, 32>;
+// A quarter faster than 32 bytes on Intel's cores; on AMD's Zen 5 the same.
+using D = hn::CappedTag<std::uint8_t, 64>;
 using V = hn::Vec<D>;
 using Scratch = simd::SemiGlobalScratch;
 
@@ -39,21 +39,48 @@ HWY_INLINE int least(DV d, hn::Vec<DV> a, hn::Vec<DV> b) {
     return hn::GetLane(hn::BitCast(d16, v));
   }
 }
+/// The least of every fourth lane: four bytes.
+template <class DV>
+HWY_INLINE std::uint32_t least_fourth(DV d, hn::Vec<DV> v) {
+  if constexpr (hn::MaxLanes(DV()) > 16) {
+    const hn::Half<DV> half;
+    return least_fourth(half, hn::Min(hn::LowerHalf(half, v), hn::UpperHalf(half, v)));
+  } else {
+    const hn::Repartition<std::uint32_t, DV> d32;
+    v = hn::Min(v, hn::ShiftRightBytes<8>(d, v));
+    v = hn::Min(v, hn::ShiftRightBytes<4>(d, v));
+    return hn::GetLane(hn::BitCast(d32, v));
+  }
+}
+/// The same of four vectors, in four bytes: half the work of two pairs.
+template <class DV>
+HWY_INLINE std::uint32_t least(DV d, hn::Vec<DV> a, hn::Vec<DV> b, hn::Vec<DV> c, hn::Vec<DV> e) {
+  const hn::Repartition<std::uint16_t, DV> d16;
+  const auto ab = hn::BitCast(d16, hn::Min(hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b)));
+  const auto ce = hn::BitCast(d16, hn::Min(hn::InterleaveLower(d, c, e), hn::InterleaveUpper(d, c, e)));
+  const auto lower = hn::BitCast(d, hn::InterleaveLower(d16, ab, ce)), upper = hn::BitCast(d, hn::InterleaveUpper(d16, ab, ce));
+  return least_fourth(d, hn::Min(lower, upper));
+}
 HWY_INLINE int first_of(int pair) { return pair & 255; }
 HWY_INLINE int second_of(int pair) { return pair >> 8; }
 
 /// What the pixel before on a path left behind. Least and P2 are bytes in memory: from there they are broadcast in one step.
 struct Before {
   const std::uint8_t* costs;  // lane 0 of its path costs
-  V least, jump, p1;
-  Before(const std::uint8_t* costs_, const std::uint8_t* least_, const std::uint8_t* p2, int p1_)
-      : costs(costs_), least(hn::Set(D(), *least_)), jump(hn::Add(least, hn::Set(D(), *p2))), p1(set(p1_)) {}
+  V least, beside_most, p1;
+  /// `p2_more`: P2 - P1.
+  Before(const std::uint8_t* costs_, const std::uint8_t* least_, const std::uint8_t* p2_more, int p1_)
+      : costs(costs_), least(hn::Set(D(), *least_)), beside_most(hn::Add(least, hn::Set(D(), *p2_more))), p1(set(p1_)) {}
 
+  /// A neighbour beyond min L' + P2 - P1 is no better than a larger step: held to that, it becomes one when P1 is added. So
+  /// nothing passes 255, and what is added need not saturate, which only half the units can do; but for lanes that hold no
+  /// disparity, whose cost is 255.
+  template <bool kUnused>
   HWY_INLINE V step(int j, V cost) const {
     const D d;
-    const auto beside = hn::Min(hn::LoadU(d, costs + j - 1), hn::LoadU(d, costs + j + 1));
-    const auto best = hn::Min(hn::Min(hn::Load(d, costs + j), hn::SaturatedAdd(beside, p1)), jump);
-    return hn::SaturatedAdd(cost, hn::Sub(best, least));
+    const auto beside = hn::Min(hn::Min(hn::LoadU(d, costs + j - 1), hn::LoadU(d, costs + j + 1)), beside_most);
+    const auto best = hn::Min(hn::Load(d, costs + j), hn::Add(beside, p1));
+    return kUnused ? hn::SaturatedAdd(cost, hn::Sub(best, least)) : hn::Add(cost, hn::Sub(best, least));
   }
 };
 
@@ -105,7 +132,7 @@ struct PixelCost {
       sum = hn::Add(sum, hn::Min(hn::Min(to_right, to_left), most));
     }
     const auto all = hn::Add(census_most, hn::Add(most, hn::Add(most, most)));
-    return hn::Max(sum, hn::And(all, hn::Or(outside, load(right.outside))));
+    return hn::IfVecThenElse(hn::Or(outside, load(right.outside)), all, sum);
   }
 };
 

@@ -45,8 +45,8 @@ struct SemiGlobalParams {
 /// Shape    planes and outputs H x W; left and right planes padded alike by padding() columns
 /// Units    left and right px; fine 1/16 px; margin in costs
 /// Border   edge columns of the right view continue: d may exceed x
-/// Exact    ref, simd and vk agree bit for bit, with any number of threads. All in bytes: C <= 16 + 3 * 32 = 112, L <= C + P2 <=
-/// 224; where
+/// Exact    ref, simd and vk agree bit for bit, with any number of threads. All in bytes: C <= 16 + 3 * 32 = 112, L <= C + P2
+/// <= 224; where
 ///          L + p1 would pass 255 it saturates, above min L' + P2 <= 224, and changes nothing
 /// Source   Hirschmueller, "Stereo processing by semiglobal matching and mutual information", 2008; P2 by the picture's
 /// gradient
@@ -87,8 +87,8 @@ class SemiGlobalScratch {
     Image<std::uint8_t> best, winner;  // of the right view, padding() columns before x = 0
     Image<std::uint8_t> beside;        // [2][pixel]: how much more than the winner's S its lower and its higher neighbour have
   };
-  int lanes = 0;                             // disparities with those that only fill the last vector
-  int stride = 0;                            // lanes + kGap
+  int lanes = 0;   // disparities with those that only fill the last vector
+  int stride = 0;  // lanes + kGap
   // [row of the ring]: a row for each direction, [pixel][disparity] and [pixel], with a pixel of zeros on both sides.
   std::vector<Image<std::uint8_t>> paths, minima;
   std::uint8_t* first_cell(std::uint8_t* row) const { return row + kGap + stride; }  // of x = 0

@@ -19,7 +19,8 @@ SemiGlobalScratch::SemiGlobalScratch(Size size, int max_disparity, const SemiGlo
     fill(paths.back());
     for (int k = 0; k < directions; ++k)
       for (const int x : {-1, size.width})
-        std::memset(first_cell(paths.back().row(k)) + static_cast<std::ptrdiff_t>(x) * stride, 0, static_cast<std::size_t>(lanes));
+        std::memset(first_cell(paths.back().row(k)) + static_cast<std::ptrdiff_t>(x) * stride, 0,
+                    static_cast<std::size_t>(lanes));
     minima.emplace_back(Size{size.width + 2, directions});
   }
   for (Row& row : rows) {
