@@ -1,5 +1,6 @@
-// Depth of people at distances that a laser measured. The pairs are rectified, but nothing says what their focal length times
-// baseline is: for each folder it is taken from all the others, as the median of distance times disparity.
+// Depth of people at distances that a laser measured. The pairs come rectified, but their right pictures were undistorted as
+// another lens; what rows tell of that is put right first, as `duoptic depth` does (docs/rows.md). Nothing says what their
+// focal length times baseline is: for each folder it is taken from all the others, as the median of distance times disparity.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "duoptic/engine.h"
@@ -32,86 +34,97 @@ constexpr Torso kTorsos[] = {
     {"dist_cm_250_350", 3.50, 0.49, 0.545, 0.37, 0.50},  {"dist_cm_298_604", 2.98, 0.47, 0.55, 0.33, 0.49},
     {"dist_cm_298_604", 6.04, 0.585, 0.612, 0.41, 0.50}, {"dist_cm_790", 7.90, 0.515, 0.535, 0.50, 0.56}};
 
-class LabDistances : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = test::data_folder() / "sequences" / "persons_lab_1080p";
-    if (!fs::exists(folder_)) GTEST_SKIP() << "skipped: no data";
-  }
-  /// Median disparity of the torso in each pair of its folder, pixels.
-  std::vector<double> disparities_px(const Torso& torso) {
-    std::vector<fs::path> lefts;
-    for (const auto& entry : fs::directory_iterator(folder_ / torso.folder))
-      if (entry.path().filename().string().ends_with("_left.jpg")) lefts.push_back(entry.path());
-    std::sort(lefts.begin(), lefts.end());
-    std::vector<double> out;
-    for (const fs::path& left : lefts) out.push_back(disparity_px(left, torso));
-    return out;
-  }
-
- private:
-  double disparity_px(const fs::path& left, const Torso& torso) {
-    std::string right = left.string();
-    right.replace(right.rfind("_left"), 5, "_right");
-    auto pairs = open_pairs(left, right);
-    EXPECT_TRUE(pairs) << pairs.error().what;
-    Pair pair;
-    const auto next = (*pairs)->next(pair);
-    EXPECT_TRUE(next && *next == Next::kPicture);
-    if (!engine_) {
-      engine_ = std::move(*make_engine("simd", 2));
-      duo::Setup setup;
-      setup.size = (*pairs)->size();
-      // The matcher the figures were taken with. sgm meets one torso more (25 of 29) but misses another by more than the slack:
-      // see docs/measurements.md.
-      setup.matcher = "pyramid";
-      setup.max_disparity = 128;
-      EXPECT_TRUE(engine_->prepare(setup));
-    }
-    engine_->submit(pair);
-    const Image<std::uint16_t>& d_q4 = engine_->collect().disparity.d_q4;
-    const auto at = [](double share, int length) { return static_cast<int>(share * length); };
-    std::vector<int> known;
-    for (int y = at(torso.top, d_q4.height()); y < at(torso.bottom, d_q4.height()); ++y)
-      for (int x = at(torso.left, d_q4.width()); x < at(torso.right, d_q4.width()); ++x)
-        if (d_q4.at(y, x) != Disparity::kNone) known.push_back(d_q4.at(y, x));
-    EXPECT_GT(known.size(), 100U) << left;
-    if (known.empty()) return 0;
-    const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-    std::nth_element(known.begin(), middle, known.end());
-    return *middle / 16.0;
-  }
-
-  fs::path folder_;
-  std::unique_ptr<Engine> engine_;
+struct Sample {
+  const Torso* torso;
+  double d_px;
 };
 
-// The named distances contradict each other by some centimetres: two persons at "1.76 m" have disparities 3 % apart, and one at
-// "1.60 m", in the same place of the picture, is only 5 % nearer than the first of them. So most pairs must hold the limit, and
-// each with kNamedM more.
-TEST_F(LabDistances, WithinThreePercentAndOneStep) {
-  constexpr double kShare = 0.03, kNamedM = 0.06;
-  struct Sample {
-    const Torso* torso;
-    double d_px;
-  };
-  std::vector<Sample> samples;
+/// Median disparity of a torso, pixels.
+double torso_px(const Image<std::uint16_t>& d_q4, const Torso& torso) {
+  const auto at = [](double share, int length) { return static_cast<int>(share * length); };
+  std::vector<int> known;
+  for (int y = at(torso.top, d_q4.height()); y < at(torso.bottom, d_q4.height()); ++y)
+    for (int x = at(torso.left, d_q4.width()); x < at(torso.right, d_q4.width()); ++x)
+      if (d_q4.at(y, x) != Disparity::kNone) known.push_back(d_q4.at(y, x));
+  EXPECT_GT(known.size(), 100U) << torso.folder;
+  if (known.empty()) return 0;
+  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+  std::nth_element(known.begin(), middle, known.end());
+  return *middle / 16.0;
+}
+
+/// Of all torsos in a pair of a folder.
+void sample(const fs::path& left, const std::string& folder, const char* matcher, std::vector<Sample>& out) {
+  std::string right = left.string();
+  right.replace(right.rfind("_left"), 5, "_right");
+  auto pairs = open_pairs(left, right);
+  ASSERT_TRUE(pairs) << pairs.error().what;
+  Pair pair;
+  const auto next = (*pairs)->next(pair);
+  ASSERT_TRUE(next && *next == Next::kPicture);
+  duo::Setup setup;
+  setup.size = (*pairs)->size();
+  setup.rows = find_row_offsets(pair, 2);
+  EXPECT_TRUE(setup.rows->matter() && setup.rows->lens) << left;
+  setup.matcher = matcher;
+  setup.max_disparity = 128;
+  const auto engine = std::move(*make_engine("simd", 2));
+  ASSERT_TRUE(engine->prepare(setup));
+  engine->submit(pair);
+  const Frame& frame = engine->collect();
   for (const Torso& torso : kTorsos)
-    for (const double d_px : disparities_px(torso)) samples.push_back({&torso, d_px});
-  std::size_t met = 0;
+    if (torso.folder == folder) out.push_back({&torso, torso_px(frame.disparity.d_q4, torso)});
+}
+
+std::vector<Sample> sample_all(const fs::path& persons, const char* matcher) {
+  std::vector<fs::path> lefts;
+  for (const auto& entry : fs::recursive_directory_iterator(persons))
+    if (entry.path().filename().string().ends_with("_left.jpg") && entry.path().string().find("dist_cm") != std::string::npos)
+      lefts.push_back(entry.path());
+  std::sort(lefts.begin(), lefts.end());
+  std::vector<Sample> out;
+  for (const fs::path& left : lefts) sample(left, left.parent_path().filename().string(), matcher, out);
+  return out;
+}
+
+/// How far each torso is off, as a share of what is allowed: 3 % of the named distance and a step of one pixel.
+std::vector<double> shares_of_allowed(const std::vector<Sample>& samples) {
+  std::vector<double> out;
   for (const Sample& sample : samples) {
     std::vector<double> products;
     for (const Sample& other : samples)
       if (std::strcmp(other.torso->folder, sample.torso->folder) != 0) products.push_back(other.torso->distance_m * other.d_px);
     std::nth_element(products.begin(), products.begin() + static_cast<std::ptrdiff_t>(products.size() / 2), products.end());
     const double scale = products[products.size() / 2], named_m = sample.torso->distance_m, found_m = scale / sample.d_px;
-    const double allowed_m = kShare * named_m + found_m / sample.d_px;  // a step of one pixel
-    std::printf("%.2f m: %.2f m (%.1f px, %+.1f %%)\n", named_m, found_m, sample.d_px, 100 * (found_m / named_m - 1));
-    met += std::abs(found_m - named_m) <= allowed_m;
-    EXPECT_NEAR(found_m, named_m, allowed_m + kNamedM) << sample.torso->folder;
+    const double allowed_m = 0.03 * named_m + found_m / sample.d_px;
+    out.push_back(std::abs(found_m - named_m) / allowed_m);
+    std::printf("%.2f m: %.2f m (%.1f px, %+.1f %%, %.2f of what is allowed)\n", named_m, found_m, sample.d_px,
+                100 * (found_m / named_m - 1), out.back());
   }
-  std::printf("%zu of %zu within 3 %% and one step\n", met, samples.size());
-  EXPECT_GE(met, 8 * samples.size() / 10);
+  return out;
+}
+
+class LabDistances : public testing::Test {
+ protected:
+  void SetUp() override {
+    persons_ = test::data_folder() / "sequences" / "persons_lab_1080p";
+    if (!fs::exists(persons_)) GTEST_SKIP() << "skipped: no data";
+  }
+  fs::path persons_;
+};
+
+TEST_F(LabDistances, WithinThreePercentAndOneStep) {
+  const auto shares = shares_of_allowed(sample_all(persons_, "pyramid"));
+  ASSERT_EQ(shares.size(), 29U);
+  for (const double share : shares) EXPECT_LE(share, 1);
+}
+
+// Plain cloth in soft pictures: fewer of its pixels match, and two torsos (at 1.50 and 1.76 m) come out 6 and 7 % nearer.
+TEST_F(LabDistances, SemiGlobalMeetsNearlyAll) {
+  const auto shares = shares_of_allowed(sample_all(persons_, "sgm"));
+  ASSERT_EQ(shares.size(), 29U);
+  EXPECT_GE(std::count_if(shares.begin(), shares.end(), [](double share) { return share <= 1; }), 27);
+  for (const double share : shares) EXPECT_LE(share, 1.6);
 }
 
 }  // namespace

@@ -119,7 +119,8 @@ nlohmann::json json_of(const std::optional<RowOffsets>& rows) {
           {"least_px", rows->least_px},
           {"most_px", rows->most_px},
           {"median_before_px", rows->before_px},
-          {"median_after_px", rows->after_px}};
+          {"median_after_px", rows->after_px},
+          {"columns_px", rows->lens ? rows->lens->columns_px : 0.0}};
 }
 
 void print(const Summary& summary, const Engine& engine, const Options& options, const Setup& setup) {
@@ -149,6 +150,11 @@ void print(const Summary& summary, const Engine& engine, const Options& options,
           "rows disagreed by {:.1f} px at the median ({:.1f} to {:.1f}), by {} points: put right to {:.2f} px; --keep-rows "
           "leaves them\n",
           setup.rows->before_px, setup.rows->least_px, setup.rows->most_px, setup.rows->points, setup.rows->after_px);
+    if (setup.rows && setup.rows->lens)
+      fmt::print(
+          "the rows tell that the right picture was undistorted or scaled wrongly: columns, off by {:.1f} px near its sides, "
+          "too\n",
+          setup.rows->lens->columns_px);
     fmt::print(
         "{} frame{} of {}x{}, {:.1f} ms each ({}, {}, {} threads), {:.0f} % of the pixels have a disparity; written to {}\n",
         summary.ms.size(), summary.ms.size() == 1 ? "" : "s", setup.size.width, setup.size.height, ms, engine.name(),

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/lens_left_over.h"
+
 namespace duo {
 namespace {
 
@@ -79,6 +81,39 @@ Terms fit_terms(const std::vector<RowDifference>& all, int width_px) {
   return fit;
 }
 
+/// As many points lie close, and as close.
+bool explains_as_well(const std::vector<double>& errors_px, const std::vector<double>& others_px) {
+  constexpr double kClose_px = 1, kFinest_px = 0.05;
+  const auto close = [](const std::vector<double>& all) {
+    std::vector<double> out;
+    for (const double e : all)
+      if (std::abs(e) < kClose_px) out.push_back(std::abs(e));
+    return out;
+  };
+  const auto a = close(errors_px), b = close(others_px);
+  if (a.empty() || 100 * a.size() < 99 * b.size()) return false;
+  return b.empty() || median(a) <= 1.25 * std::max(median(b), kFinest_px);
+}
+
+/// The lens in place of the terms, and what rows are off by it.
+void take_lens(const LensLeftOver& lens, const SceneMatches& scene, const std::vector<double>& errors, RowOffsets& out) {
+  std::vector<double> off, before, after;
+  for (const double e : errors) off.push_back(std::abs(e));
+  const double farthest_px = 3 * scale_px(off);
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    if (off[i] > farthest_px) continue;
+    const double px = scene.matches[i].right_px.y - scene.matches[i].left_px.y;
+    before.push_back(std::abs(px));
+    after.push_back(off[i]);
+    out.least_px = before.size() == 1 ? px : std::min(out.least_px, px);
+    out.most_px = before.size() == 1 ? px : std::max(out.most_px, px);
+  }
+  out.lens = lens;
+  out.points = static_cast<int>(before.size());
+  out.before_px = median(before);
+  out.after_px = median(after);
+}
+
 }  // namespace
 
 double RowOffsets::at(double x_px, double y_px) const {
@@ -115,6 +150,13 @@ RowOffsets fit_row_offsets(const SceneMatches& scene) {
   out.points = static_cast<int>(before.size());
   out.before_px = median(before);
   out.after_px = median(after);
+  if (const auto lens = fit_lens_left_over(scene)) {
+    std::vector<double> by_terms;
+    for (const SceneMatch& m : scene.matches)
+      by_terms.push_back(m.right_px.y - m.left_px.y - terms_at(m.right_px.x, m.left_px.y, scene.size).dot(fit));
+    const std::vector<double> by_lens = lens_row_errors_px(*lens, scene);
+    if (explains_as_well(by_lens, by_terms)) take_lens(*lens, scene, by_lens, out);
+  }
   return out;
 }
 
@@ -133,13 +175,15 @@ Rectification row_maps(const RowOffsets& rows) {
   using Columns = ResampleMap::Columns;
   out.left = {Image<std::uint32_t>(rows.size), Image<std::uint16_t>(rows.size), Columns::kSoft};
   out.right = {Image<std::uint32_t>(rows.size), Image<std::uint16_t>(rows.size), Columns::kCubic};
+  LensPlaces places(rows);
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       // A row just beyond the picture is taken as its last one: that costs less than a row that nobody may look at, at every
       // coarser level twice as many.
-      const double row = y + rows.at(x, y), last = h - 1;
+      const Vec2 place = rows.lens ? places.at(x, y) : Vec2{double(x), y + rows.at(x, y)};
+      const double row = place.y, last = h - 1;
       const bool beside = row >= -kBeside_px && row <= last + kBeside_px;
-      put_place(out.right, y, x, {double(x), beside ? std::clamp(row, 0.0, last) : row}, rows.size);
+      put_place(out.right, y, x, {place.x, beside ? std::clamp(row, 0.0, last) : row}, rows.size);
       put_place(out.left, y, x, {double(x), double(y)}, rows.size);
       // The left picture stays where it is, and is blurred like the right one there.
       const std::uint32_t column = out.left.corner.at(y, x) & 0xFFFF0000;
