@@ -3,10 +3,11 @@
 #include <algorithm>
 
 #include "core/check.h"
+#include "core/clock.h"
 
 namespace duo {
 
-Pool::Pool(int threads) {
+Pool::Pool(int threads) : in_use_(threads) {
   DUO_CHECK(threads >= 1);
   workers_.reserve(static_cast<std::size_t>(threads - 1));
   for (int part = 1; part < threads; ++part) workers_.emplace_back([this, part] { work(part); });
@@ -20,29 +21,54 @@ Pool::~Pool() {
   start_.notify_all();
 }
 
+void Pool::use(int threads) {
+  DUO_CHECK(threads >= 1 && threads <= most());
+  const std::lock_guard lock(mutex_);
+  in_use_ = threads;
+}
+
+Pool::Effort Pool::take_effort() {
+  const Effort out{wall_ns_, cpu_ns_.exchange(0)};
+  wall_ns_ = 0;
+  return out;
+}
+
 void Pool::run(int count, int grain, Call call, void* context) {
   if (count <= 0) return;
-  if (workers_.empty() || count <= grain) return call(context, 0, count, 0);
+  if (workers_.empty()) return call(context, 0, count, 0);
+  const std::int64_t begin_ns = wall_ns();
+  const bool alone = in_use_ == 1 || count <= grain;
   {
     const std::lock_guard lock(mutex_);
     count_ = count;
     grain_ = grain;
     call_ = call;
     context_ = context;
-    busy_ = static_cast<int>(workers_.size());
-    ++round_;
+    busy_ = alone ? 0 : in_use_ - 1;
+    round_ += !alone;
   }
-  start_.notify_all();
-  run_part(0);
-  std::unique_lock lock(mutex_);
-  done_.wait(lock, [this] { return busy_ == 0; });
+  if (alone) {
+    compute(0, count, 0);
+  } else {
+    start_.notify_all();
+    run_part(0);
+    std::unique_lock lock(mutex_);
+    done_.wait(lock, [this] { return busy_ == 0; });
+  }
+  wall_ns_ += wall_ns() - begin_ns;
 }
 
-void Pool::run_part(int part) const {
+void Pool::run_part(int part) {
   const int blocks = (count_ + grain_ - 1) / grain_;
   const auto bound = [&](int p) { return std::min(count_, static_cast<int>(std::int64_t{blocks} * p / threads()) * grain_); };
   const int begin = bound(part), end = bound(part + 1);
-  if (begin < end) call_(context_, begin, end, part);
+  if (begin < end) compute(begin, end, part);
+}
+
+void Pool::compute(int begin, int end, int part) {
+  const std::int64_t begin_ns = clock_ns(CLOCK_THREAD_CPUTIME_ID);
+  call_(context_, begin, end, part);
+  cpu_ns_ += clock_ns(CLOCK_THREAD_CPUTIME_ID) - begin_ns;
 }
 
 void Pool::work(int part) {
@@ -52,6 +78,7 @@ void Pool::work(int part) {
     start_.wait(lock, [&] { return stop_ || round_ != seen; });
     if (stop_) return;
     seen = round_;
+    if (part >= in_use_) continue;
     lock.unlock();
     run_part(part);
     lock.lock();

@@ -1,6 +1,7 @@
 // Pool: long-lived threads that share the rows of an image. Waits block, nothing is allocated per call.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
@@ -20,11 +21,21 @@ class Pool {
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
-  int threads() const { return static_cast<int>(workers_.size()) + 1; }
+  /// Those in use, and those there are.
+  int threads() const { return in_use_; }
+  int most() const { return static_cast<int>(workers_.size()) + 1; }
+  /// Lets the others rest, 1 .. most(), until called again. Parts are fewer then, never more.
+  void use(int threads);
 
-  /// Calls f(begin, end) or f(begin, end, part) on contiguous parts of [0, count), one part a thread, each part's start a multiple
-  /// of `grain`. Which thread runs which part must not change the result: stages write only their own rows; `part` < threads()
-  /// chooses scratch memory.
+  /// Of all work since the last call: how long it took, and how long its threads computed, all together.
+  struct Effort {
+    std::int64_t wall_ns = 0, cpu_ns = 0;
+  };
+  Effort take_effort();
+
+  /// Calls f(begin, end) or f(begin, end, part) on contiguous parts of [0, count), one part a thread, each part's start a
+  /// multiple of `grain`. Which thread runs which part must not change the result: stages write only their own rows; `part` <
+  /// threads() chooses scratch memory.
   template <class F>
   void rows(int count, F&& f, int grain = 1) {
     auto call = [](void* context, int begin, int end, [[maybe_unused]] int part) {
@@ -40,18 +51,21 @@ class Pool {
  private:
   using Call = void (*)(void* context, int begin, int end, int part);
   void run(int count, int grain, Call call, void* context);
-  void run_part(int part) const;
+  void run_part(int part);
+  void compute(int begin, int end, int part);
   void work(int part);
 
   std::vector<std::jthread> workers_;
   std::mutex mutex_;
   std::condition_variable start_, done_;
   std::uint64_t round_ = 0;
-  int busy_ = 0;
+  int in_use_ = 1, busy_ = 0;
   bool stop_ = false;
   int count_ = 0, grain_ = 1;
   Call call_ = nullptr;
   void* context_ = nullptr;
+  std::int64_t wall_ns_ = 0;
+  std::atomic<std::int64_t> cpu_ns_ = 0;
 };
 
 }  // namespace duo

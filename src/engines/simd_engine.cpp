@@ -7,6 +7,7 @@
 
 #include "core/check.h"
 #include "core/clock.h"
+#include "core/governor.h"
 #include "engines/engines.h"
 #include "engines/keep_windows.h"
 #include "engines/prepared.h"
@@ -25,13 +26,15 @@ namespace {
 
 class SimdEngine final : public Engine {
  public:
-  explicit SimdEngine(int threads) : pool_(threads) {}
+  explicit SimdEngine(int threads) : pool_(threads), governor_(threads) {}
 
   const char* name() const override { return "simd"; }
   const std::optional<Rectified>& rectified() const override { return prepared_.geometry; }
 
   Result<void> prepare(const Setup& setup) override {
     DUO_TRY_ASSIGN(prepared_, prepare_setup(setup));
+    pool_.use(pool_.most());  // memory is taken for all of them
+    governor_ = Governor(pool_.most());
     for (Frame& frame : frames_) frame = make_frame(prepared_);
     if (const auto* pyramid = std::get_if<PyramidParams>(&prepared_.matcher))
       matcher_.emplace<simd::Pyramid>(pool_, *pyramid, match_setup(prepared_));
@@ -52,6 +55,7 @@ class SimdEngine final : public Engine {
     DUO_CHECK(matcher_.index() != 0);
     DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
     const Setup& setup = prepared_.setup;
+    pool_.use(governor_.threads());
     current_ ^= 1;
     Frame& frame = frames_[current_];
     frame.sequence = pair.sequence;
@@ -81,6 +85,8 @@ class SimdEngine final : public Engine {
     timer_.stage("fill");
     if (setup.wants.depth) simd::depth(pool_, disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
     timer_.stage("depth");
+    const Pool::Effort effort = pool_.take_effort();
+    governor_.made(effort.wall_ns, effort.cpu_ns);
   }
 
   const Frame& collect() override { return frames_[current_]; }
@@ -122,6 +128,7 @@ class SimdEngine final : public Engine {
   }
 
   Pool pool_;
+  Governor governor_;
   Prepared prepared_;
   std::variant<std::monostate, simd::Pyramid, simd::Sgm> matcher_;
   std::vector<Window> windows_;

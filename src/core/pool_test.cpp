@@ -1,0 +1,106 @@
+#include "core/governor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <vector>
+
+#include "core/pool.h"
+
+namespace duo {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+/// Frames of 30 ms of arithmetic; `took(threads)`: how long each takes. Returns the threads of each.
+template <class F>
+std::vector<int> frames(Governor& governor, int count, F took) {
+  std::vector<int> out;
+  for (int i = 0; i < count; ++i) {
+    out.push_back(governor.threads());
+    governor.made(took(governor.threads()) * kMs, 30 * kMs);
+  }
+  return out;
+}
+
+TEST(Governor, KeepsAllThreadsThatHaveTheirCores) {
+  Governor governor(2);
+  EXPECT_EQ(frames(governor, 200, [](int threads) { return threads == 2 ? 18 : 30; }), std::vector(200, 2));
+}
+
+TEST(Governor, OneSlowFrameChangesNothing) {
+  Governor governor(2);
+  int i = 0;
+  EXPECT_EQ(frames(governor, 50, [&](int) { return ++i == 20 ? 60 : 18; }), std::vector(50, 2));
+}
+
+TEST(Governor, OneThreadWhereTwoWaitForEachOther) {
+  Governor governor(2);
+  const auto threads = frames(governor, 1000, [](int n) { return n == 2 ? 150 : 50; });
+  EXPECT_EQ(threads[5], 1);
+  // Two are tried again less and less often: a frame each time, as that alone takes as long as three of one thread.
+  EXPECT_LT(std::count(threads.begin() + 5, threads.end(), 2), 10);
+  EXPECT_GT(std::count(threads.begin() + 5, threads.end(), 2), 2);
+}
+
+TEST(Governor, AllComeBackWhenTheCoresAreFree) {
+  Governor governor(2);
+  frames(governor, 500, [](int n) { return n == 2 ? 150 : 50; });
+  // The one thread waits no longer: soon two are tried, and stay.
+  const auto threads = frames(governor, 80, [](int n) { return n == 2 ? 18 : 30; });
+  EXPECT_EQ(threads.back(), 2);
+}
+
+TEST(Governor, HalfOfManyIsTriedFirst) {
+  Governor governor(16);
+  // Four cores are free: the more threads, the longer it takes beyond them.
+  const auto threads = frames(governor, 400, [](int n) { return n <= 4 ? 32 / n : 8 * n / 4; });
+  EXPECT_EQ(threads[0], 16);
+  EXPECT_GT(std::count(threads.begin(), threads.end(), 4), 350);
+}
+
+TEST(Governor, ThreadsThatWaitByNatureStay) {
+  Governor governor(16);
+  // Sixteen take as long as twice two would, and are the fastest all the same.
+  const auto threads = frames(governor, 400, [](int n) { return n == 16 ? 7 : n == 8 ? 9 : 30; });
+  EXPECT_EQ(threads.back(), 16);
+  EXPECT_LT(std::count(threads.begin() + 100, threads.end(), 8), 20);
+}
+
+TEST(Pool, UsesAsManyThreadsAsItIsTold) {
+  Pool pool(3);
+  for (const int threads : {3, 1, 2, 3}) {
+    pool.use(threads);
+    EXPECT_EQ(pool.threads(), threads);
+    EXPECT_EQ(pool.most(), 3);
+    std::atomic<int> parts = 0, rows = 0;
+    pool.rows(1000, [&](int begin, int end, int part) {
+      EXPECT_LT(part, threads);
+      ++parts;
+      rows += end - begin;
+    });
+    EXPECT_EQ(parts, threads);
+    EXPECT_EQ(rows, 1000);
+  }
+}
+
+TEST(Pool, TellsWhatItsThreadsTook) {
+  Pool pool(2);
+  for (const int threads : {1, 2}) {
+    pool.use(threads);
+    pool.take_effort();
+    pool.rows(2, [&](int begin, int end) {
+      volatile int steps = 0;
+      while (steps < (end - begin) * 10'000'000) steps = steps + 1;
+    });
+    const Pool::Effort effort = pool.take_effort();
+    EXPECT_GT(effort.wall_ns, 0);
+    EXPECT_GT(effort.cpu_ns, effort.wall_ns / 20);  // a busy machine may give it little
+    EXPECT_LE(effort.cpu_ns, threads * effort.wall_ns + kMs);
+    EXPECT_EQ(pool.take_effort().wall_ns, 0);
+  }
+}
+
+}  // namespace
+}  // namespace duo
