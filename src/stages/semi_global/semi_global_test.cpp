@@ -120,6 +120,8 @@ TEST(SemiGlobal, SimdAgrees) {
         expect_agree({1, 1}, 1, params, masked, test::Fill::kRandom);
         expect_agree({7, 9}, 3, params, masked, test::Fill::kCheckerboard);
         expect_agree({131, 4}, 129, params, masked, test::Fill::kHigh);
+        expect_agree({170, 3}, 153, params, masked, test::Fill::kRandom);  // not all lanes of the first vector in use
+        expect_agree({90, 3}, 96, params, masked, test::Fill::kHigh);
         if (::testing::Test::HasFailure()) return;
       }
     }
@@ -136,6 +138,7 @@ TEST(SemiGlobal, SimdAgreesAtTheBounds) {
   params.diagonals = params.upward = true;
   expect_agree({50, 12}, 24, params, true, test::Fill::kCheckerboard);
   expect_agree({50, 12}, 24, params, false, test::Fill::kRandom);
+  expect_agree({50, 12}, 90, params, false, test::Fill::kRandom);
 }
 
 }  // namespace
