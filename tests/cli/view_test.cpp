@@ -88,9 +88,11 @@ class ViewWindow : public ::testing::Test {
     ASSERT_TRUE(write_png(raw.pair.left.pixels, at("left.png")) && write_png(raw.pair.right.pixels, at("right.png")));
     ASSERT_TRUE(save_rig(raw.rig, at("rig.json")));
     if (std::system("command -v Xvfb xdotool timeout >/dev/null") != 0) return;
-    const std::string start = "cd '" + at("").string() +
-                              "' && { Xvfb -displayfd 1 -screen 0 1500x900x24 -nolisten tcp >display.txt 2>/dev/null & echo $! "
-                              ">xvfb.txt; }";
+    // -noreset: without it the server starts anew when its last window closes, and lets nobody in meanwhile.
+    const std::string start =
+        "cd '" + at("").string() +
+        "' && { Xvfb -displayfd 1 -screen 0 1500x900x24 -nolisten tcp -noreset >display.txt 2>/dev/null & echo $! "
+        ">xvfb.txt; }";
     ASSERT_EQ(std::system(start.c_str()), 0);
     ASSERT_TRUE(waited([] { return !bytes_of(at("display.txt")).empty(); }));
   }
