@@ -23,7 +23,6 @@ Pool::~Pool() {
 
 void Pool::use(int threads) {
   DUO_CHECK(threads >= 1 && threads <= most());
-  const std::lock_guard lock(mutex_);
   in_use_ = threads;
 }
 
@@ -44,7 +43,8 @@ void Pool::run(int count, int grain, Call call, void* context) {
     grain_ = grain;
     call_ = call;
     context_ = context;
-    busy_ = alone ? 0 : in_use_ - 1;
+    parts_ = alone ? 1 : in_use_;
+    busy_ = parts_ - 1;
     round_ += !alone;
   }
   if (alone) {
@@ -60,7 +60,7 @@ void Pool::run(int count, int grain, Call call, void* context) {
 
 void Pool::run_part(int part) {
   const int blocks = (count_ + grain_ - 1) / grain_;
-  const auto bound = [&](int p) { return std::min(count_, static_cast<int>(std::int64_t{blocks} * p / threads()) * grain_); };
+  const auto bound = [&](int p) { return std::min(count_, static_cast<int>(std::int64_t{blocks} * p / parts_) * grain_); };
   const int begin = bound(part), end = bound(part + 1);
   if (begin < end) compute(begin, end, part);
 }
@@ -78,7 +78,7 @@ void Pool::work(int part) {
     start_.wait(lock, [&] { return stop_ || round_ != seen; });
     if (stop_) return;
     seen = round_;
-    if (part >= in_use_) continue;
+    if (part >= parts_) continue;  // of this round, or woken late for one it had no part in
     lock.unlock();
     run_part(part);
     lock.lock();

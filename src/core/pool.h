@@ -59,7 +59,8 @@ class Pool {
   std::mutex mutex_;
   std::condition_variable start_, done_;
   std::uint64_t round_ = 0;
-  int in_use_ = 1, busy_ = 0;
+  int in_use_ = 1;            // the caller's
+  int parts_ = 1, busy_ = 0;  // of this round
   bool stop_ = false;
   int count_ = 0, grain_ = 1;
   Call call_ = nullptr;

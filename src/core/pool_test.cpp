@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <thread>
 #include <vector>
 
 #include "core/pool.h"
@@ -82,6 +83,19 @@ TEST(Pool, UsesAsManyThreadsAsItIsTold) {
     });
     EXPECT_EQ(parts, threads);
     EXPECT_EQ(rows, 1000);
+  }
+}
+
+// A thread that wakes late, for work it had no part in, must not take part when more are in use by then.
+TEST(Pool, ThreadsThatRestedDoNotWorkTwice) {
+  Pool pool(4);
+  for (int i = 0; i < 20000; ++i) {
+    pool.use(i % 2 == 0 ? 2 : 4);
+    std::atomic<int> rows = 0;
+    pool.rows(64, [&](int begin, int end) { rows += end - begin; });
+    ASSERT_EQ(rows, 64);
+    pool.use(4);
+    if (i % 7 == 0) std::this_thread::yield();
   }
 }
 
