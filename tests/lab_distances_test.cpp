@@ -119,7 +119,7 @@ TEST_F(LabDistances, WithinThreePercentAndOneStep) {
   for (const double share : shares) EXPECT_LE(share, 1);
 }
 
-// Plain cloth in soft pictures: fewer of its pixels match, and two torsos (at 1.50 and 1.76 m) come out 6 and 7 % nearer.
+// Plain cloth in soft pictures: fewer of its pixels match, and two torsos (at 1.50 and 1.76 m) come out 7 and 6 % nearer.
 TEST_F(LabDistances, SemiGlobalMeetsNearlyAll) {
   const auto shares = shares_of_allowed(sample_all(persons_, "sgm"));
   ASSERT_EQ(shares.size(), 29U);
