@@ -52,6 +52,7 @@ Result<ArmRun> ArmRun::open(Input input, const ArmOptions& options, std::int64_t
   DUO_TRY_ASSIGN(run.tracker_, make_tracker("arm", options.tracker_preset));
   setup.wants = run.tracker_->wants();
   if (options.all_maps) setup.wants.color = setup.wants.views = setup.wants.disparity = true;
+  setup.many_at_once = options.in_bulk && !input.pairs->live();
   DUO_TRY(run.engine_->prepare(setup));
   const double frame_s = input.pairs->frame_s();
   DUO_TRY(run.tracker_->prepare({rig, *run.engine_->rectified(), frame_s}));
@@ -67,7 +68,8 @@ Result<ArmRun> ArmRun::open(Input input, const ArmOptions& options, std::int64_t
   run.header_.size = setup.size;
   run.header_.frame_s = frame_s;
   run.header_.live = input.pairs->live();
-  run.frames_ = std::make_unique<FrameAhead>(std::move(input.pairs), *run.engine_, first);
+  run.frames_ = std::make_unique<FrameAhead>(std::move(input.pairs), *run.engine_, first,
+                                             setup.many_at_once ? run.engine_->in_flight() : 1);
   return run;
 }
 

@@ -21,6 +21,7 @@ struct ArmOptions {
   std::string tracker_preset = "default";
   int max_disparity = 0;  // 0: what something at kNearest_m has
   bool all_maps = false;  // frames are drawn or scored, not only tracked
+  bool in_bulk = false;   // of files: as many frames a second as can be, rather than each soon; not for set()
 
   void add_to(CLI::App& app);
 };

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "ahead.h"
 #include "duoptic/engine.h"
@@ -18,20 +19,31 @@ namespace duo::app {
 struct Matched {
   Pair pair;
   const Frame* frame = nullptr;
-  double engine_ms = 0;
-  std::string event;  // Engine::take_event()
+  double engine_ms = 0;  // from when the engine was given the pair to its frame
+  std::string event;     // Engine::take_event()
 };
 
-/// Pairs through an engine, one frame ahead; files are read one pair ahead of that. A live source gives its newest pair when
-/// the engine is free.
+/// Pairs through an engine, one frame ahead and `at_once` in the engine; files are read one pair ahead of that. A live source
+/// gives its newest pair when the engine is free.
 class FrameAhead {
  public:
-  /// Pairs before number `first` are read, not matched, and not given. The engine must be prepared, and outlive this.
-  FrameAhead(std::unique_ptr<PairSource> source, Engine& engine, std::int64_t first)
-      : source_(std::move(source)), engine_(engine), first_(first), count_(source_->count()) {
+  /// Pairs before number `first` are read, not matched, and not given. The engine must be prepared, take `at_once` pairs, one
+  /// of live ones, and outlive this.
+  FrameAhead(std::unique_ptr<PairSource> source, Engine& engine, std::int64_t first, int at_once)
+      : source_(std::move(source)),
+        engine_(engine),
+        first_(first),
+        count_(source_->count()),
+        ring_(static_cast<std::size_t>(at_once)) {
     if (!source_->live()) pairs_.emplace([this](Pair& into) { return source_->next(into); });
     frames_.emplace([this](Matched& into) { return match(into); });
   }
+  ~FrameAhead() {
+    frames_.reset();
+    for (; in_engine_ > 0; --in_engine_) engine_.collect();  // it works on pairs of ours
+  }
+  FrameAhead(const FrameAhead&) = delete;
+  FrameAhead& operator=(const FrameAhead&) = delete;
 
   std::int64_t count() const { return count_; }
   bool live() const { return source_->live(); }
@@ -42,7 +54,8 @@ class FrameAhead {
   const Matched& last() const { return last_; }
   /// Before the end: until the next frame is ready; matching then rests.
   void wait() { frames_->wait(); }
-  /// Before the end: another setup for the engine. The last frame and the one that is ready are made anew.
+  /// Before the end, and with one at once: another setup for the engine. The last frame and the one that is ready are made
+  /// anew.
   ///
   /// Errors  those of Engine::prepare(); then all is as it was
   Result<void> prepare(const Setup& setup) {
@@ -50,8 +63,8 @@ class FrameAhead {
     frames_->amend([&](Matched* ahead) {
       prepared = engine_.prepare(setup);
       if (!prepared) return;
-      if (last_.frame != nullptr) make_frame(last_);
-      if (ahead != nullptr) make_frame(*ahead);
+      if (last_.frame != nullptr) make_anew(last_);
+      if (ahead != nullptr) make_anew(*ahead);
     });
     return prepared;
   }
@@ -64,25 +77,67 @@ class FrameAhead {
   bool still() const { return source_->still(); }
 
  private:
+  /// A pair that the engine works on.
+  struct InEngine {
+    Matched matched;
+    Image<Rgb8> other_right;  // the picture as it came, while the engine has it in step; else memory for the next such one
+    bool in_step = false;
+    double since_ms = 0;
+  };
+
   Result<Next> match(Matched& into) {
-    do {
-      DUO_TRY_ASSIGN(const Next next, pairs_ ? pairs_->next(into.pair) : source_->next(into.pair));
-      if (next != Next::kPicture) return next;
-      if (read_ == 0) start_ns_ = into.pair.left.t_ns;
-      if (read_ < first_ && source_->live()) return ++read_, Next::kNothing;  // it may be long: who waits may want to stop
-    } while (read_++ < first_);
-    make_frame(into);
+    while (in_engine_ < ring_.size() && !end_) {
+      InEngine& next = ring_[(oldest_ + in_engine_) % ring_.size()];
+      Result<Next> read = read_pair(next.matched.pair);
+      if (read && *read == Next::kNothing && in_engine_ == 0) return read;
+      if (read && *read == Next::kNothing) break;
+      if (read && *read == Next::kPicture) {
+        submit(next);
+        ++in_engine_;
+      } else {
+        end_ = std::move(read);
+      }
+    }
+    if (in_engine_ == 0) return *end_;
+    collect(ring_[oldest_]);
+    std::swap(into, ring_[oldest_].matched);
+    oldest_ = (oldest_ + 1) % ring_.size();
+    --in_engine_;
     return Next::kPicture;
   }
-  void make_frame(Matched& of) {
-    of.engine_ms = timed([&] {
-                     Image<Rgb8>* moved = in_step_.right_of(of.pair);
-                     if (moved != nullptr) std::swap(of.pair.right.pixels, *moved);  // for the engine only
-                     engine_.submit(of.pair);
-                     of.frame = &engine_.collect();
-                     if (moved != nullptr) std::swap(of.pair.right.pixels, *moved);
-                   }).wall_ms;
-    of.event = engine_.take_event();
+  Result<Next> read_pair(Pair& into) {
+    do {
+      DUO_TRY_ASSIGN(const Next next, pairs_ ? pairs_->next(into) : source_->next(into));
+      if (next != Next::kPicture) return next;
+      if (read_ == 0) start_ns_ = into.left.t_ns;
+      if (read_ < first_ && source_->live()) return ++read_, Next::kNothing;  // it may be long: who waits may want to stop
+    } while (read_++ < first_);
+    return Next::kPicture;
+  }
+
+  void submit(InEngine& of) {
+    of.since_ms = clock_ms(CLOCK_MONOTONIC);
+    Image<Rgb8>& right = of.matched.pair.right.pixels;
+    Image<Rgb8>* moved = in_step_.right_of(of.matched.pair);
+    of.in_step = moved != nullptr;
+    if (of.in_step) {  // for the engine only
+      if (of.other_right.size() != right.size()) of.other_right = Image<Rgb8>(right.size());
+      std::swap(of.other_right, *moved);
+      std::swap(right, of.other_right);
+    }
+    engine_.submit(of.matched.pair);
+  }
+  void collect(InEngine& of) {
+    of.matched.frame = &engine_.collect();
+    of.matched.engine_ms = clock_ms(CLOCK_MONOTONIC) - of.since_ms;
+    of.matched.event = engine_.take_event();
+    if (of.in_step) std::swap(of.matched.pair.right.pixels, of.other_right);
+  }
+  void make_anew(Matched& of) {
+    std::swap(of, ring_[oldest_].matched);
+    submit(ring_[oldest_]);
+    collect(ring_[oldest_]);
+    std::swap(of, ring_[oldest_].matched);
   }
 
   std::unique_ptr<PairSource> source_;
@@ -91,6 +146,9 @@ class FrameAhead {
   std::int64_t read_ = 0;
   TimeNs start_ns_ = 0;
   InStep in_step_;
+  std::vector<InEngine> ring_;
+  std::size_t oldest_ = 0, in_engine_ = 0;  // in_engine_ of ring_ from oldest_
+  std::optional<Result<Next>> end_;         // what came after them
   Matched last_;
   std::optional<Ahead<Pair>> pairs_;  // the threads come last, in the order of who uses whom
   std::optional<Ahead<Matched>> frames_;

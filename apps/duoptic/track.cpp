@@ -202,6 +202,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   }
   ArmOptions arm = options.arm;
   arm.all_maps = !options.sinks.video.empty();
+  arm.in_bulk = true;
   DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(input), arm, options.at_frame));
   std::optional<Interrupt> interrupt;
   if (run.header().live) interrupt.emplace();

@@ -48,6 +48,7 @@ struct Setup {
   bool fill = false;                                       // fill holes from the background
   Denoise denoise = Denoise::kAuto;
   Wants wants;
+  bool many_at_once = false;  // threads of the CPU make frames of their own, several at once: more of them, each later
   bool time_stages = false;
 };
 
@@ -62,7 +63,7 @@ class Engine {
   virtual ~Engine() = default;
   virtual const char* name() const = 0;
   virtual Result<void> prepare(const Setup& setup) = 0;
-  /// How many pairs may be submitted before the first of them is collected.
+  /// How many pairs may be submitted before the first of them is collected, once prepare() was called.
   virtual int in_flight() const { return 1; }
   /// Only these windows of the left rectified picture matter from the next submit() on; none: all of it. Inside them disparity,
   /// origin, confidence and depth are the same, bit for bit, as of the whole picture; outside there are none. Engine simd with
@@ -70,8 +71,8 @@ class Engine {
   virtual void look_at(std::span<const Window> windows) = 0;
   /// Starts work on a pair of the size given to prepare(); the pair must live until its collect() returns.
   virtual void submit(const Pair& pair) = 0;
-  /// The finished frame of the oldest pair submitted. It stays as it is until the frame after the next is made: what comes
-  /// after may work on it meanwhile, in another thread.
+  /// The finished frame of the oldest pair submitted. What comes after may work on it in another thread: it stays as it is
+  /// while the next one is made, until a pair is submitted or a frame collected after that one was collected.
   virtual const Frame& collect() = 0;
   /// The device that computes, where that is not the CPU.
   virtual std::string device() const { return {}; }

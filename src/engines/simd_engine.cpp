@@ -1,143 +1,123 @@
-// The fast CPU engine: Highway stages on a pool of threads.
+// The fast CPU engine: one frame by all threads, or several at once by some each.
 
 #include <algorithm>
 #include <array>
-#include <optional>
-#include <variant>
+#include <atomic>
+#include <thread>
+#include <vector>
 
 #include "core/check.h"
-#include "core/clock.h"
-#include "core/governor.h"
 #include "engines/engines.h"
-#include "engines/keep_windows.h"
-#include "engines/prepared.h"
-#include "matchers/pyramid/pyramid.h"
-#include "matchers/sgm/sgm.h"
-#include "stages/depth/depth.h"
-#include "stages/fill/fill.h"
-#include "stages/gaussian/gaussian.h"
-#include "stages/gray/gray.h"
-#include "stages/median/median.h"
-#include "stages/rectify/rectify.h"
-#include "stages/weighted_median/weighted_median.h"
+#include "engines/simd_frames.h"
 
 namespace duo {
 namespace {
 
+/// A thread that makes a frame while others make theirs.
+class Lane {
+ public:
+  Lane(const Prepared& prepared, int threads) : frames_(prepared, threads), thread_([this] { make_all(); }) {}
+  ~Lane() {
+    collect();
+    tell(State::kStop);
+    thread_.join();
+  }
+
+  void submit(const Pair& pair, const std::vector<Window>& windows) {
+    pair_ = &pair;
+    windows_ = windows;
+    tell(State::kMake);
+  }
+  const Frame& collect() {
+    state_.wait(State::kMake);
+    return *frame_;
+  }
+
+ private:
+  enum class State { kRest, kMake, kStop };
+  void tell(State state) {
+    state_ = state;
+    state_.notify_all();
+  }
+  void make_all() {
+    for (;;) {
+      state_.wait(State::kRest);
+      if (state_ == State::kStop) return;
+      frame_ = &frames_.make(*pair_, windows_);
+      tell(State::kRest);
+    }
+  }
+
+  SimdFrames frames_;
+  const Pair* pair_ = nullptr;  // these are the thread's from kMake to kRest
+  std::vector<Window> windows_;
+  const Frame* frame_ = nullptr;
+  std::atomic<State> state_ = State::kRest;
+  std::thread thread_;  // last: it uses all of the above
+};
+
+/// Threads that share a frame wait for each other's rows; those with frames of their own do not, but each frame takes longer,
+/// and memory of its own. Beyond four frames that memory is more than what they gain.
+int frames_at_once(const Setup& setup, int threads) {
+  constexpr int kMost = 4;
+  return setup.many_at_once ? std::min(threads, kMost) : 1;
+}
+
 class SimdEngine final : public Engine {
  public:
-  explicit SimdEngine(int threads) : pool_(threads), governor_(threads) {}
+  explicit SimdEngine(int threads) : threads_(threads) {}
 
   const char* name() const override { return "simd"; }
+  int in_flight() const override { return std::max(1, static_cast<int>(lanes_.size())); }
   const std::optional<Rectified>& rectified() const override { return prepared_.geometry; }
 
   Result<void> prepare(const Setup& setup) override {
-    DUO_TRY_ASSIGN(prepared_, prepare_setup(setup));
-    pool_.use(pool_.most());  // memory is taken for all of them
-    governor_ = Governor(pool_.most());
-    for (Frame& frame : frames_) frame = make_frame(prepared_);
-    if (const auto* pyramid = std::get_if<PyramidParams>(&prepared_.matcher))
-      matcher_.emplace<simd::Pyramid>(pool_, *pyramid, match_setup(prepared_));
-    else
-      matcher_.emplace<simd::Sgm>(pool_, std::get<SgmParams>(prepared_.matcher), match_setup(prepared_));
-    if (setup.fill) {
-      unsmoothed_ = Image<std::uint16_t>(prepared_.size);
-      smooth_scratch_.emplace(prepared_.size);
+    DUO_TRY_ASSIGN(Prepared checked, prepare_setup(setup));
+    alone_.reset();  // first: they speak of the old setup, and there need not be memory for both
+    lanes_.clear();
+    prepared_ = std::move(checked);
+    first_ = count_ = 0;
+    const int at_once = frames_at_once(setup, threads_);
+    if (at_once == 1) {
+      alone_ = std::make_unique<SimdFrames>(prepared_, threads_);
+    } else {
+      for (int i = 0; i < at_once; ++i)
+        lanes_.push_back(std::make_unique<Lane>(prepared_, threads_ / at_once + (i < threads_ % at_once)));
     }
-    now_ = Image<std::uint8_t>(setup.size);
-    next_ = Image<std::uint8_t>(setup.size);
     return {};
   }
 
   void look_at(std::span<const Window> windows) override { windows_.assign(windows.begin(), windows.end()); }
 
   void submit(const Pair& pair) override {
-    DUO_CHECK(matcher_.index() != 0);
-    DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
-    const Setup& setup = prepared_.setup;
-    pool_.use(governor_.threads());
-    current_ ^= 1;
-    Frame& frame = frames_[current_];
-    frame.sequence = pair.sequence;
-    frame.t_ns = pair.left.t_ns;
-    frame.skew_ns = pair.right.t_ns - pair.left.t_ns;
-    timer_.start(frame.stages, setup.time_stages);
-
-    const auto* maps = prepared_.rectification ? &*prepared_.rectification : nullptr;
-    prepare_view(pair.left, maps ? &maps->left : nullptr, frame.left, frame.left_inside);
-    // While the picture and its map are in the cache.
-    if (prepared_.color) prepare_color(pair.left, maps, frame.color);
-    timer_.stage("color");
-    prepare_view(pair.right, maps ? &maps->right : nullptr, frame.right, frame.right_inside);
-
-    const int height = prepared_.size.height;
-    const RowBand shown = RowBand::of(windows_, prepared_.size);
-    const RowBand matched = setup.fill ? shown.grown(WeightedMedian::kRadius, height) : shown;
-    Disparity& disparity = frame.disparity;
-    const GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside};
-    if (auto* pyramid = std::get_if<simd::Pyramid>(&matcher_))
-      pyramid->match(gray, disparity.d_q4, timer_);
+    DUO_CHECK(prepared_.setup.size == pair.left.pixels.size() && prepared_.setup.size == pair.right.pixels.size());
+    DUO_CHECK(count_ < in_flight());
+    if (alone_ != nullptr)
+      frame_ = &alone_->make(pair, windows_);
     else
-      std::get<simd::Sgm>(matcher_).match(gray, {disparity.d_q4, frame.confidence}, timer_, matched);
-    simd::mark_measured(pool_, disparity.d_q4, disparity.origin);
-    if (setup.fill) fill(frame, shown);
-    keep_windows(windows_, frame);
-    timer_.stage("fill");
-    if (setup.wants.depth) simd::depth(pool_, disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
-    timer_.stage("depth");
-    const Pool::Effort effort = pool_.take_effort();
-    governor_.made(effort.wall_ns, effort.cpu_ns);
+      lane(first_ + count_).submit(pair, windows_);
+    ++count_;
   }
 
-  const Frame& collect() override { return frames_[current_]; }
+  const Frame& collect() override {
+    DUO_CHECK(count_ > 0);
+    --count_;
+    if (alone_ != nullptr) return *frame_;
+    const Frame& frame = lane(first_).collect();
+    first_ = (first_ + 1) % in_flight();
+    return frame;
+  }
 
  private:
-  /// Raw colour to what the matcher sees. Denoising comes before resampling: only there is noise independent from pixel to
-  /// pixel.
-  void prepare_view(const Picture& picture, const ResampleMap* map, Image<std::uint8_t>& out, Image<std::uint8_t>& inside) {
-    simd::gray(pool_, picture.pixels, now_);
-    timer_.stage("gray");
-    if (prepared_.median) {
-      simd::median3x3(pool_, now_, next_);
-      now_.swap(next_);
-      timer_.stage("median");
-    }
-    if (prepared_.gaussian) {
-      simd::gaussian5x5(pool_, now_, next_);
-      now_.swap(next_);
-      timer_.stage("gaussian");
-    }
-    if (map != nullptr)
-      simd::rectify(pool_, now_, *map, out, inside);
-    else
-      out.swap(now_);
-    timer_.stage("rectify");
-  }
+  Lane& lane(int frame) { return *lanes_[static_cast<std::size_t>(frame % in_flight())]; }
 
-  /// What was filled takes the disparity of those filled or measured pixels around it that look like it.
-  void fill(Frame& frame, RowBand rows) {
-    Disparity& disparity = frame.disparity;
-    simd::fill(pool_, disparity.d_q4, disparity.origin);
-    disparity.d_q4.swap(unsmoothed_);
-    simd::weighted_median(pool_, {unsmoothed_, frame.left, disparity.origin, rows}, *smooth_scratch_, disparity.d_q4);
-  }
-
-  void prepare_color(const Picture& picture, const Rectification* maps, Image<Rgb8>& out) {
-    if (maps != nullptr) return simd::rectify(pool_, picture.pixels, maps->left, out);
-    for (int y = 0; y < picture.pixels.height(); ++y) std::copy_n(picture.pixels.row(y), picture.pixels.width(), out.row(y));
-  }
-
-  Pool pool_;
-  Governor governor_;
+  const int threads_;
   Prepared prepared_;
-  std::variant<std::monostate, simd::Pyramid, simd::Sgm> matcher_;
-  std::vector<Window> windows_;
-  std::array<Frame, 2> frames_;  // the last one stays as it is while the next is made
-  unsigned current_ = 0;
-  std::optional<simd::WeightedMedianScratch> smooth_scratch_;
-  Image<std::uint16_t> unsmoothed_;  // disparities just filled
-  Image<std::uint8_t> now_, next_;   // one view on its way through the denoising
-  StageTimer timer_;
+  std::unique_ptr<SimdFrames> alone_;         // after what they refer to: either one that does all,
+  std::vector<std::unique_ptr<Lane>> lanes_;  // or several that take turns
+  const Frame* frame_ = nullptr;
+  std::vector<Window> windows_;  // of the next submit
+  int first_ = 0, count_ = 0;    // in flight: count_ of them, the oldest in lane first_
 };
 
 }  // namespace

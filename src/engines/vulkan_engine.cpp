@@ -128,7 +128,9 @@ class VulkanEngine final : public Engine {
 
   Result<void> prepare_cpu() {
     cpu_ = make_simd_engine(threads_);
-    return cpu_->prepare(prepared_->setup);
+    Setup setup = prepared_->setup;
+    setup.many_at_once = false;  // its frames are made as they are collected
+    return cpu_->prepare(setup);
   }
 
   void go_on_with_cpu(const Error& why) {

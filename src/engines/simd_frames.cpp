@@ -1,0 +1,106 @@
+// A frame on the CPU: Highway stages on a pool of threads.
+
+#include "engines/simd_frames.h"
+
+#include <algorithm>
+
+#include "core/check.h"
+#include "engines/keep_windows.h"
+#include "stages/depth/depth.h"
+#include "stages/fill/fill.h"
+#include "stages/gaussian/gaussian.h"
+#include "stages/gray/gray.h"
+#include "stages/median/median.h"
+#include "stages/rectify/rectify.h"
+
+namespace duo {
+
+SimdFrames::SimdFrames(const Prepared& prepared, int threads) : prepared_(prepared), pool_(threads), governor_(threads) {
+  for (Frame& frame : frames_) frame = make_frame(prepared);
+  if (const auto* pyramid = std::get_if<PyramidParams>(&prepared.matcher))
+    matcher_.emplace<simd::Pyramid>(pool_, *pyramid, match_setup(prepared));
+  else
+    matcher_.emplace<simd::Sgm>(pool_, std::get<SgmParams>(prepared.matcher), match_setup(prepared));
+  if (prepared.setup.fill) {
+    unsmoothed_ = Image<std::uint16_t>(prepared.size);
+    smooth_scratch_.emplace(prepared.size);
+  }
+  now_ = Image<std::uint8_t>(prepared.setup.size);
+  next_ = Image<std::uint8_t>(prepared.setup.size);
+}
+
+const Frame& SimdFrames::make(const Pair& pair, std::span<const Window> windows) {
+  DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
+  const Setup& setup = prepared_.setup;
+  pool_.use(governor_.threads());
+  current_ ^= 1;
+  Frame& frame = frames_[current_];
+  frame.sequence = pair.sequence;
+  frame.t_ns = pair.left.t_ns;
+  frame.skew_ns = pair.right.t_ns - pair.left.t_ns;
+  timer_.start(frame.stages, setup.time_stages);
+
+  const auto* maps = prepared_.rectification ? &*prepared_.rectification : nullptr;
+  prepare_view(pair.left, maps ? &maps->left : nullptr, frame.left, frame.left_inside);
+  // While the picture and its map are in the cache.
+  if (prepared_.color) prepare_color(pair.left, maps, frame.color);
+  timer_.stage("color");
+  prepare_view(pair.right, maps ? &maps->right : nullptr, frame.right, frame.right_inside);
+
+  const int height = prepared_.size.height;
+  const RowBand shown = RowBand::of(windows, prepared_.size);
+  const RowBand matched = setup.fill ? shown.grown(WeightedMedian::kRadius, height) : shown;
+  Disparity& disparity = frame.disparity;
+  const GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside};
+  if (auto* pyramid = std::get_if<simd::Pyramid>(&matcher_))
+    pyramid->match(gray, disparity.d_q4, timer_);
+  else
+    std::get<simd::Sgm>(matcher_).match(gray, {disparity.d_q4, frame.confidence}, timer_, matched);
+  simd::mark_measured(pool_, disparity.d_q4, disparity.origin);
+  if (setup.fill) fill(frame, shown);
+  keep_windows(windows, frame);
+  timer_.stage("fill");
+  if (setup.wants.depth) simd::depth(pool_, disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
+  timer_.stage("depth");
+  const Pool::Effort effort = pool_.take_effort();
+  governor_.made(effort.wall_ns, effort.cpu_ns);
+  return frame;
+}
+
+/// Raw colour to what the matcher sees. Denoising comes before resampling: only there is noise independent from pixel to
+/// pixel.
+void SimdFrames::prepare_view(const Picture& picture, const ResampleMap* map, Image<std::uint8_t>& out,
+                              Image<std::uint8_t>& inside) {
+  simd::gray(pool_, picture.pixels, now_);
+  timer_.stage("gray");
+  if (prepared_.median) {
+    simd::median3x3(pool_, now_, next_);
+    now_.swap(next_);
+    timer_.stage("median");
+  }
+  if (prepared_.gaussian) {
+    simd::gaussian5x5(pool_, now_, next_);
+    now_.swap(next_);
+    timer_.stage("gaussian");
+  }
+  if (map != nullptr)
+    simd::rectify(pool_, now_, *map, out, inside);
+  else
+    out.swap(now_);
+  timer_.stage("rectify");
+}
+
+/// What was filled takes the disparity of those filled or measured pixels around it that look like it.
+void SimdFrames::fill(Frame& frame, RowBand rows) {
+  Disparity& disparity = frame.disparity;
+  simd::fill(pool_, disparity.d_q4, disparity.origin);
+  disparity.d_q4.swap(unsmoothed_);
+  simd::weighted_median(pool_, {unsmoothed_, frame.left, disparity.origin, rows}, *smooth_scratch_, disparity.d_q4);
+}
+
+void SimdFrames::prepare_color(const Picture& picture, const Rectification* maps, Image<Rgb8>& out) {
+  if (maps != nullptr) return simd::rectify(pool_, picture.pixels, maps->left, out);
+  for (int y = 0; y < picture.pixels.height(); ++y) std::copy_n(picture.pixels.row(y), picture.pixels.width(), out.row(y));
+}
+
+}  // namespace duo

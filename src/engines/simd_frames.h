@@ -1,0 +1,50 @@
+// Frames on the CPU, one after the other: what the simd engine's threads do.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "core/clock.h"
+#include "core/governor.h"
+#include "core/pool.h"
+#include "engines/prepared.h"
+#include "matchers/pyramid/pyramid.h"
+#include "matchers/sgm/sgm.h"
+#include "stages/weighted_median/weighted_median.h"
+
+namespace duo {
+
+/// Makes a frame of a pair with a pool of threads and memory of its own; allocates nothing once it is there.
+///
+/// Threads  one caller at a time; the pool's work for it
+class SimdFrames {
+ public:
+  /// `prepared` must outlive this.
+  SimdFrames(const Prepared& prepared, int threads);
+  SimdFrames(const SimdFrames&) = delete;
+  SimdFrames& operator=(const SimdFrames&) = delete;
+
+  /// The frame stays as it is until the one after the next is begun. Windows: see Engine::look_at().
+  const Frame& make(const Pair& pair, std::span<const Window> windows);
+
+ private:
+  void prepare_view(const Picture& picture, const ResampleMap* map, Image<std::uint8_t>& out, Image<std::uint8_t>& inside);
+  void prepare_color(const Picture& picture, const Rectification* maps, Image<Rgb8>& out);
+  void fill(Frame& frame, RowBand rows);
+
+  const Prepared& prepared_;
+  Pool pool_;
+  Governor governor_;
+  std::variant<std::monostate, simd::Pyramid, simd::Sgm> matcher_;
+  std::array<Frame, 2> frames_;
+  unsigned current_ = 0;
+  std::optional<simd::WeightedMedianScratch> smooth_scratch_;
+  Image<std::uint16_t> unsmoothed_;  // disparities just filled
+  Image<std::uint8_t> now_, next_;   // one view on its way through the denoising
+  StageTimer timer_;
+};
+
+}  // namespace duo
