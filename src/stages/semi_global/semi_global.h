@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -71,15 +72,29 @@ void semi_global(const SemiGlobal& in, const SemiGlobalMatch& out);
 }  // namespace ref
 
 namespace simd {
+/// What one thread does of a sweep. Its columns are those of its team: the whole row, or a half of it, which is walked along
+/// from its end to the middle.
+struct SemiGlobalPart {
+  int begin = 0, end = 0;
+  int thread = 0, threads = 1;  // which of its team
+  int thread_of_all = 0;
+  std::atomic<int>* done = nullptr;          // [row]: pixels finished, in the order of the walk
+  const std::atomic<int>* facing = nullptr;  // of the other half; none: this is the whole row
+  int facing_width = 0;
+
+  int width() const { return end - begin; }
+};
+
 /// The memory of the sweeps: a ring of rows of path costs (one for each thread and one more), sums and costs of two rows for
-/// each thread, and with `upward` one byte for each pixel and disparity.
+/// each thread (seven where threads have halves), and with `upward` one byte for each pixel and disparity.
 class SemiGlobalScratch {
  public:
   SemiGlobalScratch(Size size, int max_disparity, const SemiGlobalParams& params, int threads);
   /// Columns by which the planes must continue to the left.
   static int padding(int max_disparity) { return (max_disparity + kGap - 1) / kGap * kGap; }
 
-  static constexpr int kGap = 64;  // bytes of 255 between the path costs of two pixels: d = -1 and d = max_disparity
+  static constexpr int kBehind = 6;  // rows of a thread that the way back of halves is behind the way along; else it is one
+  static constexpr int kGap = 64;    // bytes of 255 between the path costs of two pixels: d = -1 and d = max_disparity
   struct Row {
     Image<std::uint8_t> sums, costs;   // [pixel][disparity]
     Image<std::uint8_t> along, back;   // [2][disparity]: path costs along the row and back, this pixel's and those before
@@ -92,10 +107,17 @@ class SemiGlobalScratch {
   // [row of the ring]: a row for each direction, [pixel][disparity] and [pixel], with a pixel of zeros on both sides.
   std::vector<Image<std::uint8_t>> paths, minima;
   std::uint8_t* first_cell(std::uint8_t* row) const { return row + kGap + stride; }  // of x = 0
-  Image<std::uint8_t> none;                  // path costs and minima where there is no row before: zeros
-  std::vector<Row> rows;                     // two a thread
+  Image<std::uint8_t> none;  // path costs and minima where there is no row before: zeros
+  int rows_each = 2;         // of a thread, in use at once
+  std::vector<Row> rows;     // [thread][rows_each]
+  Row& row(int thread, int turn) { return rows[static_cast<std::size_t>(thread * rows_each + turn % rows_each)]; }
+  // Where two halves meet. Of either half [row]: the path costs of its last pixel along the row. And [row][disparity]: what
+  // each found of the right pixels left of the middle.
+  std::array<Image<std::uint8_t>, 2> met_costs;
+  Image<std::uint8_t> met_least, left_best, right_best, right_winner;
+  std::uint8_t* met(int half, int y) { return met_costs[static_cast<std::size_t>(half)].row(y) + kGap; }
   Image<std::uint8_t> upward;                // S of the paths from below
-  std::unique_ptr<std::atomic<int>[]> done;  // [row]: pixels finished
+  std::unique_ptr<std::atomic<int>[]> done;  // [half][row]: pixels finished
 };
 void semi_global(Pool& pool, const SemiGlobal& in, SemiGlobalScratch& scratch, const SemiGlobalMatch& out);
 }  // namespace simd

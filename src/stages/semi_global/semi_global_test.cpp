@@ -117,6 +117,8 @@ TEST(SemiGlobal, SimdAgrees) {
       for (const bool masked : {false, true}) {
         expect_agree({70, 13}, 40, params, masked, test::Fill::kRandom);
         expect_agree({33, 5}, 70, params, masked, test::Fill::kRandom);
+        expect_agree({34, 61}, 20, params, masked, test::Fill::kRandom);  // more rows than are held at once
+        expect_agree({2, 9}, 5, params, masked, test::Fill::kRandom);
         expect_agree({1, 1}, 1, params, masked, test::Fill::kRandom);
         expect_agree({7, 9}, 3, params, masked, test::Fill::kCheckerboard);
         expect_agree({131, 4}, 129, params, masked, test::Fill::kHigh);
