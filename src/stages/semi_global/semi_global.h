@@ -72,21 +72,25 @@ void semi_global(const SemiGlobal& in, const SemiGlobalMatch& out);
 }  // namespace ref
 
 namespace simd {
-/// What one thread does of a sweep. Its columns are those of its team: the whole row, or a half of it, which is walked along
-/// from its end to the middle.
+/// What one thread does of a sweep. Rows are counted in the sweep's order, from the top or, `up`, from the bottom: paths pass
+/// the first ones, the sums of the next are kept in the volume, and winners are picked in the rest.
 struct SemiGlobalPart {
+  bool up = false;
+  int passed = 0, kept = 0, count = 0;  // where passing, keeping and picking end
+  // Its columns are those of its team: the whole row, or a half of it, which is walked along from its end to the middle.
   int begin = 0, end = 0;
-  int thread = 0, threads = 1;  // which of its team
-  int thread_of_all = 0;
+  int thread = 0, threads = 1;               // which of its team
+  int thread_of_all = 0, ring = 0;           // its memory: rows, and the team's first row of path costs
   std::atomic<int>* done = nullptr;          // [row]: pixels finished, in the order of the walk
   const std::atomic<int>* facing = nullptr;  // of the other half; none: this is the whole row
   int facing_width = 0;
+  std::atomic<int>*sums = nullptr, *sums_of_others = nullptr;  // threads whose sums are kept, where sweeps meet
 
   int width() const { return end - begin; }
 };
 
-/// The memory of the sweeps: a ring of rows of path costs (one for each thread and one more), sums and costs of two rows for
-/// each thread (seven where threads have halves), and with `upward` one byte for each pixel and disparity.
+/// The memory of the sweeps: rings of rows of path costs (a row for each thread, and one more for each team), sums and costs of
+/// two rows for each thread (seven where threads have halves), and with `upward` one byte for each pixel and disparity.
 class SemiGlobalScratch {
  public:
   SemiGlobalScratch(Size size, int max_disparity, const SemiGlobalParams& params, int threads);
@@ -116,8 +120,9 @@ class SemiGlobalScratch {
   std::array<Image<std::uint8_t>, 2> met_costs;
   Image<std::uint8_t> met_least, left_best, right_best, right_winner;
   std::uint8_t* met(int half, int y) { return met_costs[static_cast<std::size_t>(half)].row(y) + kGap; }
-  Image<std::uint8_t> upward;                // S of the paths from below
-  std::unique_ptr<std::atomic<int>[]> done;  // [half][row]: pixels finished
+  Image<std::uint8_t> volume;                // sums of the paths of a sweep, for the sweep from the other side
+  std::unique_ptr<std::atomic<int>[]> done;  // [team][row]: pixels finished
+  std::unique_ptr<std::atomic<int>[]> sums;  // [team]: threads whose sums are in the volume
 };
 void semi_global(Pool& pool, const SemiGlobal& in, SemiGlobalScratch& scratch, const SemiGlobalMatch& out);
 }  // namespace simd

@@ -22,43 +22,31 @@ constexpr int kSpins = 20;  // about a microsecond
 // The volume comes from main memory, and what fetches ahead by itself stops at each page.
 constexpr int kFetchAhead = 16, kLine = 64;  // pixels, bytes
 
-/// What all rows of one sweep share, as one thread sees it. Up: rows are taken from the bottom, and sums go to the volume.
+/// What all rows of one sweep share, as one thread sees it.
 struct Sweep {
   const SemiGlobal& in;
   Scratch& s;
   const SemiGlobalMatch& out;
   const Part part;
-  const bool up;
   int w, h, lanes, first;     // first: lane of the first vector that holds a disparity
-  int passed, count;          // rows that paths only pass before those wanted, and rows up to the last wanted
   int ahead;                  // pixels that a row gets ahead of the next one: with all threads at work, half of what it could
   bool partly;                // that first vector has lanes which hold none
   std::uint8_t p2_more[256];  // [gray step]: P2 - P1
   HWY_ALIGN_MAX std::uint8_t disparities[256];  // of the lanes
   HWY_ALIGN_MAX std::uint8_t unused[kGap];      // 255 in the lanes of the first vector which hold none
 
-  Sweep(const SemiGlobal& in_, Scratch& scratch, const SemiGlobalMatch& out_, const Part& part_, bool up_)
-      : in(in_),
-        s(scratch),
-        out(out_),
-        part(part_),
-        up(up_),
-        w(in.left.size().width),
-        h(in.left.size().height),
-        lanes(s.lanes) {
+  Sweep(const SemiGlobal& in_, Scratch& scratch, const SemiGlobalMatch& out_, const Part& part_)
+      : in(in_), s(scratch), out(out_), part(part_), w(in.left.size().width), h(in.left.size().height), lanes(s.lanes) {
     const int n = static_cast<int>(hn::Lanes(D()));
     first = (lanes - in.max_disparity) / n * n;
     partly = first < lanes - in.max_disparity;
     for (int j = 0; j < lanes; ++j) disparities[j] = static_cast<std::uint8_t>(lanes - 1 - j);
-    const RowBand rows = in.rows.within(h);
-    passed = up ? h - rows.end : rows.begin;
-    count = up ? h - rows.begin : rows.end;
     ahead = std::max(1, part.width() / (2 * part.threads * kBlock)) * kBlock;
     for (int i = 0; i < 256; ++i) p2_more[i] = static_cast<std::uint8_t>(in.params.p2_at(i) - in.params.p1);
     for (int j = 0; j < kGap; ++j) unused[j] = first + j < lanes - in.max_disparity ? 255 : 0;
   }
 
-  int y_of(int i) const { return up ? h - 1 - i : i; }
+  int y_of(int i) const { return part.up ? h - 1 - i : i; }
 
   /// For a thread of the same team. Who caught up lets the row above get ahead, so that not each block ends with waiting, and
   /// is woken in such steps only: a call into the kernel takes longer than a block.
@@ -69,9 +57,19 @@ struct Sweep {
   /// For the other half of row i. Who caught up lets the other get half as far ahead as it may.
   void wait_for_facing(int i) const {
     if (part.facing == nullptr || part.facing[i].load(std::memory_order_acquire) == part.facing_width) return;
-    const int later = std::min(count - 1, i + Scratch::kBehind / 2 * part.threads);
+    const int later = std::min(part.count - 1, i + Scratch::kBehind / 2 * part.threads);
     wait_until(part.facing[later], part.facing_width);
     wait_until(part.facing[i], part.facing_width);  // rows of other threads may come in any order
+  }
+  /// For the sweep from the other side, until all its sums are in the volume.
+  void wait_for_sums() const {
+    if (part.sums_of_others != nullptr) wait_until(*part.sums_of_others, part.threads);
+  }
+  void sums_are_there() const {
+    hwy::FlushStream();
+    if (part.sums == nullptr) return;
+    part.sums->fetch_add(1, std::memory_order_release);
+    part.sums->notify_all();
   }
   void finished(int i, int pixels) const {
     std::atomic<int>& done = part.done[i];
@@ -109,16 +107,16 @@ void zero_cell(const Sweep& sweep, std::uint8_t* costs) {
   std::memset(costs + sweep.first, 0, static_cast<std::size_t>(sweep.lanes - sweep.first));
 }
 
-/// What a row's walk is for: its sums of paths from below; all but the last path, before the winners; only the paths to the
-/// next row.
-enum class Walk { kUp, kDown, kPassing };
+/// What a row's walk is for: only the paths to the next row; their sums, for the volume; all but the last path, before the
+/// winners.
+enum class Walk { kPass, kKeep, kPick };
 
 /// A row on its way: from left to right, step 1, or from right to left, step -1.
 template <Walk kWalk, bool kDiagonals, int kStep>
 class Along {
  public:
   static constexpr int kPaths = kDiagonals ? 3 : 1;
-  static constexpr bool kUp = kWalk == Walk::kUp, kDown = kWalk == Walk::kDown;
+  static constexpr bool kKeep = kWalk == Walk::kKeep, kPick = kWalk == Walk::kPick;
 
   Along(const Sweep& sweep, int i, Scratch::Row& row)
       : sweep_(sweep),
@@ -127,7 +125,8 @@ class Along {
         right_(sweep.in.right, sweep.y_of(i), 1 - sweep.lanes) {
     const int ring = sweep.part.threads + 1, y = sweep.y_of(i);
     Scratch& s = sweep.s;
-    const auto here = static_cast<std::size_t>(i % ring), above = static_cast<std::size_t>((i + ring - 1) % ring);
+    const auto here = static_cast<std::size_t>(sweep.part.ring + i % ring);
+    const auto above = static_cast<std::size_t>(sweep.part.ring + (i + ring - 1) % ring);
     for (int k = 0; k < kPaths; ++k) {
       paths_[k] = s.first_cell(s.paths[here].row(k));
       minima_[k] = s.minima[here].row(k) + 1;
@@ -139,7 +138,7 @@ class Along {
     before_ = row.along.row(0) + kGap;
     zero_cell(sweep, before_);
     here_ = row.along.row(1) + kGap;
-    if (kUp || (kDown && sweep.in.params.upward)) upward_ = s.upward.row(y);
+    if (kKeep || (kPick && sweep.in.params.upward)) kept_ = s.volume.row(y);
   }
 
   /// Costs of a block of pixels. By themselves, as nothing here waits for the pixel before: mixed with the paths they take
@@ -168,23 +167,23 @@ class Along {
       return before(sweep_, paths_above_[k] + from * stride_above_, minima_above_[k] + from, gray[x], gray_above_[from]);
     };
     const Before from_above[3] = {above(0), above(kDiagonals ? 1 : 0), above(kDiagonals ? 2 : 0)};
-    std::uint8_t *const here = here_, *const sums = (kUp ? upward_ : row_.sums.row(0)) + cell,
+    std::uint8_t *const here = here_, *const sums = (kKeep ? kept_ : row_.sums.row(0)) + cell,
                         *const costs = row_.costs.row(0) + cell;
     std::uint8_t* const paths[3] = {paths_[0] + x * stride, paths_[kPaths / 2] + x * stride, paths_[kPaths - 1] + x * stride};
-    const std::uint8_t* const below = kDown && upward_ != nullptr ? upward_ + cell : nullptr;
-    if (below != nullptr && x + kFetchAhead < sweep_.w)
-      for (int j = first / kLine * kLine; j < lanes; j += kLine) hwy::Prefetch(below + kFetchAhead * lanes + j);
+    const std::uint8_t* const kept = kPick && kept_ != nullptr ? kept_ + cell : nullptr;
+    if (kept != nullptr && x + kFetchAhead < sweep_.w)
+      for (int j = first / kLine * kLine; j < lanes; j += kLine) hwy::Prefetch(kept + kFetchAhead * lanes + j);
     auto least_side = set(255);
     V least_above[3] = {least_side, least_side, least_side};
     each_vector(sweep_, [&](int j, auto unused) HWY_ATTR {
       constexpr bool kUnused = decltype(unused)::value;
       const auto cost = hn::Load(d, costs + j);
       auto sum = hn::Zero(d);
-      if (kDown) {
+      if (kPick) {
         sum = from_side.template step<kUnused>(j, cost);
         hn::Store(sum, d, here + j);
         least_side = hn::Min(least_side, sum);
-        if (below != nullptr) sum = hn::SaturatedAdd(sum, hn::Load(d, below + j));
+        if (kept != nullptr) sum = hn::SaturatedAdd(sum, hn::Load(d, kept + j));
       }
       for (int k = 0; k < kPaths; ++k) {
         const auto l = from_above[k].template step<kUnused>(j, cost);
@@ -192,8 +191,8 @@ class Along {
         least_above[k] = hn::Min(least_above[k], l);
         sum = hn::SaturatedAdd(sum, l);
       }
-      if (kUp) hn::Stream(sum, d, sums + j);  // not needed for long
-      if (kDown) hn::Store(sum, d, sums + j);
+      if (kKeep) hn::Stream(sum, d, sums + j);  // not needed for long
+      if (kPick) hn::Store(sum, d, sums + j);
     });
     if constexpr (kDiagonals) {
       const std::uint32_t all = least(d, least_side, least_above[0], least_above[1], least_above[2]);
@@ -221,7 +220,7 @@ class Along {
   std::uint8_t *paths_[3] = {}, *minima_[3] = {};
   const std::uint8_t *paths_above_[3] = {}, *minima_above_[3] = {}, *gray_above_ = nullptr;
   std::ptrdiff_t stride_above_;
-  std::uint8_t *before_, *here_, *upward_ = nullptr;
+  std::uint8_t *before_, *here_, *kept_ = nullptr;
   std::uint8_t least_ = 0;
 };
 

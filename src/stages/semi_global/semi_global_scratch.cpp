@@ -9,13 +9,13 @@ SemiGlobalScratch::SemiGlobalScratch(Size size, int max_disparity, const SemiGlo
     : lanes(padding(max_disparity)),
       stride(lanes + kGap),
       none({std::max(lanes + 2 * kGap, size.width + 2), 1}),
-      rows_each(threads > 1 && !params.diagonals ? kBehind + 1 : 2),
+      rows_each(threads > 1 && !params.diagonals && !params.upward ? kBehind + 1 : 2),
       rows(static_cast<std::size_t>(rows_each) * static_cast<std::size_t>(threads)) {
   const int directions = params.diagonals ? 3 : 1;
   const auto fill = [](Image<std::uint8_t>& image) {
     for (int y = 0; y < image.height(); ++y) std::memset(image.row(y), 255, static_cast<std::size_t>(image.width()));
   };
-  for (int i = 0; i <= threads; ++i) {
+  for (int i = 0; i < threads + (threads > 1 ? 2 : 1); ++i) {
     paths.emplace_back(Size{(size.width + 2) * stride + kGap, directions});
     fill(paths.back());
     for (int k = 0; k < directions; ++k)
@@ -36,13 +36,14 @@ SemiGlobalScratch::SemiGlobalScratch(Size size, int max_disparity, const SemiGlo
     row.winner = Image<std::uint8_t>({lanes + size.width, 1});
     row.beside = Image<std::uint8_t>({size.width, 2});
   }
-  if (params.upward) upward = Image<std::uint8_t>({size.width * lanes, size.height});
-  if (threads > 1 && !params.diagonals) {
+  if (params.upward) volume = Image<std::uint8_t>({size.width * lanes, size.height});
+  if (rows_each > 2) {
     for (Image<std::uint8_t>& costs : met_costs) costs = Image<std::uint8_t>({lanes + kGap, size.height});
     met_least = Image<std::uint8_t>({size.height, 2});
     for (Image<std::uint8_t>* found : {&left_best, &right_best, &right_winner})
       *found = Image<std::uint8_t>({lanes, size.height});
   }
+  sums = std::make_unique<std::atomic<int>[]>(2);
   done = std::make_unique<std::atomic<int>[]>(2 * static_cast<std::size_t>(size.height));
 }
 

@@ -31,34 +31,37 @@ void costs_of_block(const Part& part, A& along, int begin, int end) {
   kStep > 0 ? along.costs(part.begin + begin, part.begin + end) : along.costs(part.end - end, part.end - begin);
 }
 
-template <bool kDiagonals, int kStep>
-void pass(const Sweep& sweep, int i, Scratch::Row& row) {
+/// The rows of this thread before row `end`, without winners; the next one.
+template <Walk kWalk, bool kDiagonals, int kStep>
+int walk(const Sweep& sweep, int i, int end) {
   const Part& part = sweep.part;
-  Along<Walk::kPassing, kDiagonals, kStep> along(sweep, i, row);
-  for (int begin = 0; begin < part.width(); begin += kBlock) {
-    const int end = std::min(begin + kBlock, part.width());
-    if (i > 0) sweep.wait_for(i - 1, std::min(end + 1, part.width()));
-    costs_of_block<kStep>(part, along, begin, end);
-    for (int p = begin; p < end; ++p) along.pixel(column<kStep>(part, p));
-    sweep.finished(i, end);
+  for (; i < end; i += part.threads) {
+    Along<kWalk, kDiagonals, kStep> along(sweep, i, sweep.s.row(part.thread_of_all, 0));
+    for (int from = 0; from < part.width(); from += kBlock) {
+      const int to = std::min(from + kBlock, part.width());
+      if (i > 0) sweep.wait_for(i - 1, std::min(to + 1, part.width()));
+      costs_of_block<kStep>(part, along, from, to);
+      for (int p = from; p < to; ++p) along.pixel(column<kStep>(part, p));
+      sweep.finished(i, to);
+    }
   }
+  return i;
 }
 
-/// A thread walks along one row and back along an earlier one at the same time: each pixel of a path waits for the pixel
-/// before, and two such chains fill each other's waiting.
-template <bool kUp, bool kDiagonals, int kStep>
-void run(const Sweep& sweep) {
+/// And the rest, with winners. A thread walks along one row and back along an earlier one at the same time: each pixel of a
+/// path waits for the pixel before, and two such chains fill each other's waiting.
+template <bool kDiagonals, int kStep>
+void walk_and_pick(const Sweep& sweep, int i) {
   const Part& part = sweep.part;
   const int width = part.width(), behind = part.facing != nullptr ? Scratch::kBehind : 1;  // rows of this thread
   const auto row = [&](int turn) -> Scratch::Row& { return sweep.s.row(part.thread_of_all, turn); };
-  int i = part.thread, turn = 0;
-  for (; i < sweep.passed; i += part.threads) pass<kDiagonals, kStep>(sweep, i, row(0));
-  for (; i < sweep.count; i += part.threads, ++turn) {
-    Along<kUp ? Walk::kUp : Walk::kDown, kDiagonals, kStep> along(sweep, i, row(turn));
-    const bool both = !kUp && turn >= behind;
+  int turn = 0;
+  for (; i < part.count; i += part.threads, ++turn) {
+    Along<Walk::kPick, kDiagonals, kStep> along(sweep, i, row(turn));
+    const bool both = turn >= behind;
     const int back_i = both ? i - behind * part.threads : 0;
     if (both) sweep.wait_for_facing(back_i);
-    Back<-kStep> back(sweep, back_i, row(both ? turn - behind : turn), both);
+    Back<-kStep> back(sweep, sweep.y_of(back_i), row(both ? turn - behind : turn), both);
     for (int begin = 0; begin < width; begin += kBlock) {
       const int end = std::min(begin + kBlock, width);
       if (i > 0) sweep.wait_for(i - 1, std::min(end + 1, width));
@@ -67,30 +70,38 @@ void run(const Sweep& sweep) {
         along.pixel(column<kStep>(part, p));
         if (both) back.pixel(column<kStep>(part, width - 1 - p));
       }
-      if (!kUp && end == width && part.facing != nullptr) along.meet(i);
+      if (end == width && part.facing != nullptr) along.meet(i);
       sweep.finished(i, end);
     }
     if (both) back.finish();
   }
-  if (kUp) return hwy::FlushStream();
   for (int left = std::max(0, turn - behind); left < turn; ++left) {
     const int back_i = i - (turn - left) * part.threads;
     sweep.wait_for_facing(back_i);
-    Back<-kStep> back(sweep, back_i, row(left), true);
+    Back<-kStep> back(sweep, sweep.y_of(back_i), row(left), true);
     for (int p = width - 1; p >= 0; --p) back.pixel(column<kStep>(part, p));
     back.finish();
   }
 }
 
-void sweep(const SemiGlobal& in, Scratch& scratch, const SemiGlobalMatch& out, const Part& part, bool up) {
-  const Sweep here(in, scratch, out, part, up);
-  const bool from_right = part.begin > 0;
+template <bool kDiagonals, int kStep>
+void run(const Sweep& sweep) {
+  const Part& part = sweep.part;
+  int i = walk<Walk::kPass, kDiagonals, kStep>(sweep, part.thread, part.passed);
+  if constexpr (kStep > 0) {
+    i = walk<Walk::kKeep, kDiagonals, kStep>(sweep, i, part.kept);
+    sweep.sums_are_there();
+    sweep.wait_for_sums();
+  }
+  walk_and_pick<kDiagonals, kStep>(sweep, i);
+}
+
+void sweep(const SemiGlobal& in, Scratch& scratch, const SemiGlobalMatch& out, const Part& part) {
+  const Sweep here(in, scratch, out, part);
   if (in.params.diagonals)
-    up ? run<true, true, 1>(here) : run<false, true, 1>(here);
-  else if (from_right)
-    up ? run<true, false, -1>(here) : run<false, false, -1>(here);
+    run<true, 1>(here);
   else
-    up ? run<true, false, 1>(here) : run<false, false, 1>(here);
+    part.begin > 0 ? run<false, -1>(here) : run<false, 1>(here);
 }
 
 }  // namespace duo::HWY_NAMESPACE
@@ -111,6 +122,58 @@ void join_right_winners(const SemiGlobal& in, const SemiGlobalScratch& scratch, 
       if (scratch.right_best.at(y, j) < scratch.left_best.at(y, j)) right.at(y, x) = scratch.right_winner.at(y, j);
 }
 
+/// One of two teams, each with memory of its own; `thread` of all.
+SemiGlobalPart of_team(SemiGlobalScratch& scratch, int thread, int team, int teams_threads, int rings_before, int height) {
+  SemiGlobalPart part;
+  part.thread = thread / 2;
+  part.threads = teams_threads;
+  part.thread_of_all = thread;
+  part.ring = rings_before;
+  part.done = &scratch.done[static_cast<std::size_t>(team * height)];
+  return part;
+}
+
+/// Of an even number of threads, half sweep down and half up, and keep their sums; where they meet, each takes those of the
+/// others and picks winners in the rest.
+SemiGlobalPart meeting_sweep(SemiGlobalScratch& scratch, int thread, int threads, Size size) {
+  const int team = thread % 2, half = threads / 2;
+  SemiGlobalPart part = of_team(scratch, thread, team, half, team * (half + 1), size.height);
+  part.up = team == 1;
+  part.kept = part.up ? size.height - size.height / 2 : size.height / 2;
+  part.count = size.height;
+  part.end = size.width;
+  part.sums = &scratch.sums[static_cast<std::size_t>(team)];
+  part.sums_of_others = &scratch.sums[static_cast<std::size_t>(1 - team)];
+  return part;
+}
+
+/// Half of the threads has the left half of all columns, half the right one.
+SemiGlobalPart half_of_columns(SemiGlobalScratch& scratch, int thread, int threads, int middle, Size size, RowBand rows) {
+  const int team = thread % 2, left = (threads + 1) / 2;
+  SemiGlobalPart part = of_team(scratch, thread, team, team == 0 ? left : threads - left, team * (left + 1), size.height);
+  part.passed = part.kept = rows.begin;
+  part.count = rows.end;
+  part.begin = team == 0 ? 0 : middle;
+  part.end = team == 0 ? middle : size.width;
+  part.facing = &scratch.done[static_cast<std::size_t>((1 - team) * size.height)];
+  part.facing_width = size.width - part.width();
+  return part;
+}
+
+/// All threads take the rows of one sweep in turn. Up: all that is kept is sums.
+SemiGlobalPart row_in_turn(SemiGlobalScratch& scratch, int thread, int threads, bool up, Size size, RowBand rows) {
+  SemiGlobalPart part;
+  part.up = up;
+  part.passed = up ? size.height - rows.end : rows.begin;
+  part.count = up ? size.height - rows.begin : rows.end;
+  part.kept = up ? part.count : part.passed;
+  part.end = size.width;
+  part.thread = part.thread_of_all = thread;
+  part.threads = threads;
+  part.done = scratch.done.get();
+  return part;
+}
+
 }  // namespace
 
 void semi_global(Pool& pool, const SemiGlobal& in, SemiGlobalScratch& scratch, const SemiGlobalMatch& out) {
@@ -119,27 +182,25 @@ void semi_global(Pool& pool, const SemiGlobal& in, SemiGlobalScratch& scratch, c
   DUO_CHECK(out.left.size() == size && out.right.size() == size && out.fine.size() == size);
   DUO_CHECK(static_cast<int>(scratch.rows.size()) >= scratch.rows_each * pool.threads());
   const int threads = std::min(pool.threads(), size.height);
-  const bool halves = threads > 1 && size.width > 1 && !in.params.diagonals;
-  const int left_threads = halves ? (threads + 1) / 2 : threads;
-  const int middle = halves ? std::clamp(size.width * left_threads / threads, 1, size.width - 1) : size.width;
-  for (const bool up : {true, false}) {
-    if (up && !in.params.upward) continue;
-    std::atomic<int>*const done = scratch.done.get(), *const done_right = done + size.height;
-    for (int i = 0; i < 2 * size.height; ++i) done[i].store(0, std::memory_order_relaxed);
-    const auto run = HWY_DYNAMIC_DISPATCH(sweep);
+  const auto run = [&](const auto& part_of) {
+    for (int i = 0; i < 2 * size.height; ++i) scratch.done[static_cast<std::size_t>(i)].store(0, std::memory_order_relaxed);
+    for (std::size_t team : {0, 1}) scratch.sums[team].store(0, std::memory_order_relaxed);
+    const auto here = HWY_DYNAMIC_DISPATCH(sweep);
     pool.rows(pool.threads(), [&](int thread, int, int) {
-      if (thread >= threads) return;
-      const bool right = halves && thread % 2 == 1;
-      SemiGlobalPart part{right ? middle : 0, right ? size.width : middle};
-      part.thread = halves ? thread / 2 : thread;
-      part.threads = right ? threads - left_threads : left_threads;
-      part.thread_of_all = thread;
-      part.done = right ? done_right : done;
-      if (halves) part.facing = right ? done : done_right, part.facing_width = size.width - part.width();
-      run(in, scratch, out, part, up);
+      if (thread < threads) here(in, scratch, out, part_of(thread));
     });
+  };
+  const RowBand rows = in.rows.within(size.height);
+  const bool whole = rows.begin == 0 && rows.end == size.height;
+  if (in.params.upward && whole && threads % 2 == 0)
+    return run([&](int thread) { return meeting_sweep(scratch, thread, threads, size); });
+  if (!in.params.upward && !in.params.diagonals && threads > 1 && size.width > 1) {
+    const int middle = std::clamp(size.width * ((threads + 1) / 2) / threads, 1, size.width - 1);
+    run([&](int thread) { return half_of_columns(scratch, thread, threads, middle, size, rows); });
+    return join_right_winners(in, scratch, middle, out.right);
   }
-  if (halves) join_right_winners(in, scratch, middle, out.right);
+  for (const bool up : {true, false})
+    if (!up || in.params.upward) run([&](int thread) { return row_in_turn(scratch, thread, threads, up, size, rows); });
 }
 
 }  // namespace simd
