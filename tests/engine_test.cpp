@@ -11,41 +11,12 @@
 #include "duoptic/synthetic.h"
 #include "tests/agree.h"
 #include "tests/allocations.h"
+#include "tests/engine_setups.h"
 
 namespace duo {
 namespace {
 
-std::unique_ptr<Engine> prepared(const char* name, int threads, const duo::Setup& setup) {
-  auto engine = make_engine(name, threads);
-  EXPECT_TRUE(engine) << engine.error().what;
-  const auto ready = (*engine)->prepare(setup);
-  EXPECT_TRUE(ready) << ready.error().what;
-  return std::move(*engine);
-}
-
-const Frame& run(Engine& engine, const Pair& pair) {
-  engine.submit(pair);
-  return engine.collect();
-}
-
-/// What a user can choose.
-struct Choice {
-  const char *matcher, *preset;
-};
-constexpr Choice kChoices[] = {{"sgm", "default"}, {"sgm", "paths8"}, {"pyramid", "default"}, {"pyramid", "thesis"}};
-
-duo::Setup raw_setup(const SyntheticPair& scene, const Choice& choice) {
-  duo::Setup setup;
-  setup.size = scene.pair.left.pixels.size();
-  setup.rig = scene.rig;
-  setup.matcher = choice.matcher;
-  setup.preset = choice.preset;
-  setup.max_disparity = 48;
-  setup.denoise = Denoise::kBoth;
-  setup.fill = true;
-  setup.wants = {.color = true, .depth = true};
-  return setup;
-}
+using test::kChoices, test::Choice, test::prepared, test::raw_setup, test::run;
 
 TEST(Engine, RefAndSimdAgreeOnRawPictures) {
   SyntheticSetup synthetic;
@@ -138,20 +109,6 @@ TEST(Engine, AllocatesNothingAfterTheFirstFrame) {
     const long before = test::allocations;
     for (int i = 0; i < 3; ++i) run(*engine, scene.pair);
     EXPECT_EQ(test::allocations - before, 0) << choice.matcher << " " << choice.preset;
-
-    duo::Setup setup = raw_setup(scene, choice);
-    setup.many_at_once = true;
-    const auto many = prepared("simd", 2, setup);
-    const auto both = [&] {
-      many->submit(scene.pair);
-      many->submit(scene.pair);
-      many->collect();
-      many->collect();
-    };
-    both();
-    const long before_many = test::allocations;
-    for (int i = 0; i < 3; ++i) both();
-    EXPECT_EQ(test::allocations - before_many, 0) << choice.matcher << " " << choice.preset << " two at once";
   }
   const long before = test::allocations;
   Image<std::uint8_t> counted({8, 8});
@@ -178,75 +135,6 @@ TEST(Engine, AFrameStaysWhileTheNextIsMade) {
     test::expect_same<std::uint16_t>(d_q4, first.disparity.d_q4, std::string(name) + " disparity");
     test::expect_same<std::uint16_t>(depth_mm, first.depth_mm, std::string(name) + " depth");
   }
-}
-
-void expect_same_maps(const Frame& want, const Frame& got, const std::string& who) {
-  EXPECT_EQ(want.sequence, got.sequence) << who;
-  test::expect_same<std::uint8_t>(want.left, got.left, who + " left");
-  test::expect_same<std::uint16_t>(want.disparity.d_q4, got.disparity.d_q4, who + " disparity");
-  test::expect_same<std::uint16_t>(want.depth_mm, got.depth_mm, who + " depth");
-}
-
-// Several frames at once are those of one after the other, in the order of their pairs, each with the windows it was given; and
-// one that is worked on stays until the next was collected.
-TEST(Engine, ManyAtOnceAreThoseOfOneAfterTheOther) {
-  constexpr int kPairs = 9;
-  std::vector<SyntheticPair> scenes;
-  for (int i = 0; i < kPairs; ++i) {
-    SyntheticSetup synthetic;
-    synthetic.size = {96, 64};
-    synthetic.seed += static_cast<unsigned>(i);
-    scenes.push_back(render_synthetic(synthetic, 2));
-    scenes.back().pair.sequence = static_cast<std::uint64_t>(i);
-    scenes.back().rig = scenes[0].rig;
-  }
-  const auto windows_of = [](int i) { return i % 3 == 1 ? std::vector<Window>{{10, 5 * i, 30, 20}} : std::vector<Window>{}; };
-  for (const Choice& choice : kChoices) {
-    duo::Setup setup = raw_setup(scenes[0], choice);
-    const auto one = prepared("simd", 1, setup);
-    EXPECT_EQ(one->in_flight(), 1);
-    setup.many_at_once = true;
-    for (const int threads : {1, 2, 3, 7}) {
-      const auto many = prepared("simd", threads, setup);
-      EXPECT_EQ(many->in_flight(), std::min(threads, 4));
-      const Frame* last = nullptr;
-      for (int i = 0, submitted = 0; i < kPairs; ++i) {
-        for (; submitted < std::min(kPairs, i + many->in_flight()); ++submitted) {
-          many->look_at(windows_of(submitted));
-          many->submit(scenes[static_cast<std::size_t>(submitted)].pair);
-        }
-        const Frame& got = many->collect();
-        const std::string who = std::string(choice.matcher) + " " + choice.preset + " " + std::to_string(threads) +
-                                " threads, frame " + std::to_string(i);
-        if (last != nullptr) {
-          one->look_at(windows_of(i - 1));
-          expect_same_maps(run(*one, scenes[static_cast<std::size_t>(i - 1)].pair), *last, who + ", the one before");
-        }
-        one->look_at(windows_of(i));
-        expect_same_maps(run(*one, scenes[static_cast<std::size_t>(i)].pair), got, who);
-        last = &got;
-      }
-    }
-  }
-}
-
-// Pairs in flight are finished first; a setup that is refused changes nothing.
-TEST(Engine, ManyAtOnceEndInTheMiddle) {
-  SyntheticSetup synthetic;
-  synthetic.size = {160, 120};
-  const SyntheticPair scene = render_synthetic(synthetic, 2);
-  duo::Setup setup = raw_setup(scene, kChoices[0]);
-  setup.many_at_once = true;
-  const auto engine = prepared("simd", 3, setup);
-  engine->submit(scene.pair);
-  engine->submit(scene.pair);
-  duo::Setup wrong = setup;
-  wrong.matcher = "none";
-  EXPECT_FALSE(engine->prepare(wrong));
-  EXPECT_EQ(engine->collect().disparity.d_q4.size(), engine->rectified()->size);
-  engine->submit(scene.pair);
-  EXPECT_TRUE(engine->prepare(setup));
-  engine->submit(scene.pair);  // nobody collects it
 }
 
 struct Score {

@@ -16,8 +16,8 @@ namespace duo {
 struct SgmMaps {
   Image<std::uint8_t> balanced, softened;
   Image<std::int16_t> left_winner, right_winner;
-  Image<std::uint16_t> fine, checked;
-  SgmMaps(Size size) : balanced(size), softened(size), left_winner(size), right_winner(size), fine(size), checked(size) {}
+  Image<std::uint16_t> fine;
+  SgmMaps(Size size) : balanced(size), softened(size), left_winner(size), right_winner(size), fine(size) {}
 };
 
 /// What is found. Confidence: the margin by which the winner's cost beats all disparities beside its neighbours, at least 1; 0

@@ -27,8 +27,8 @@ void Sgm::match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer) {
   const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, params_.semi_global()};
   ref::semi_global(in, {maps_.left_winner, maps_.right_winner, maps_.fine, out.confidence});
   timer.stage("semi_global");
-  // The weighted median writes to another image than it reads: the check starts in the one from which it ends in d_q4.
-  const View<std::uint16_t> checked = params_.smooth != 0 ? maps_.checked.view() : out.d_q4;
+  // The weighted median writes to another image than it reads: the check stays in the one from which it ends in d_q4.
+  const View<std::uint16_t> checked = params_.smooth != 0 ? maps_.fine.view() : out.d_q4;
   ref::check_left_right(
       {maps_.left_winner, maps_.right_winner, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach},
       maps_.fine, checked);

@@ -15,7 +15,7 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
       params_(params),
       max_disparity_(setup.max_disparity),
       maps_(setup.size),
-      left_(setup.size, SemiGlobalScratch::padding(setup.max_disparity)),
+      left_(setup.size, PlaneImages::kPadRight),
       right_(setup.size, SemiGlobalScratch::padding(setup.max_disparity)),
       scratch_(setup.size, setup.max_disparity, params.semi_global(), pool.threads()),
       speckle_scratch_(setup.size),
@@ -44,8 +44,8 @@ void Sgm::match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer, Ro
   const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, params_.semi_global(), joined};
   simd::semi_global(pool_, in, scratch_, {maps_.left_winner, maps_.right_winner, maps_.fine, out.confidence});
   timer.stage("semi_global");
-  // The weighted median writes to another image than it reads: the check starts in the one from which it ends in d_q4.
-  const View<std::uint16_t> checked = params_.smooth != 0 ? maps_.checked.view() : out.d_q4;
+  // The weighted median writes to another image than it reads: the check stays in the one from which it ends in d_q4.
+  const View<std::uint16_t> checked = params_.smooth != 0 ? maps_.fine.view() : out.d_q4;
   simd::check_left_right(pool_,
                          {joined.of<const std::int16_t>(maps_.left_winner), joined.of<const std::int16_t>(maps_.right_winner),
                           joined.of(pair.left_inside), joined.of(pair.right_inside), params_.tolerance, params_.reach},

@@ -43,7 +43,7 @@ struct SemiGlobalParams {
 /// half. Margin: least S at other disparities than d - 1, d, d + 1, minus S(d), 255 taken where there is none. Small =
 /// doubtful.
 ///
-/// Shape    planes and outputs H x W; left and right planes padded alike by padding() columns
+/// Shape    planes and outputs H x W; right planes padded by padding() columns
 /// Units    left and right px; fine 1/16 px; margin in costs
 /// Border   edge columns of the right view continue: d may exceed x
 /// Exact    ref, simd and vk agree bit for bit, with any number of threads. All in bytes: C <= 16 + 3 * 32 = 112, L <= C + P2

@@ -160,6 +160,7 @@ class Along {
     const int first = sweep_.first, lanes = sweep_.lanes;
     const std::ptrdiff_t stride = sweep_.s.stride, cell = static_cast<std::ptrdiff_t>(x) * lanes;
     const std::uint8_t* gray = left_.value[0];
+    // Where a path begins, beside the picture, the gray step does not matter: no step is dearer than none from zeros.
     const Before from_side = before(sweep_, before_, &least_, gray[x], gray[x - kStep]);
     constexpr int kFrom[3] = {0, kDiagonals ? -1 : 0, kDiagonals ? 1 : 0};
     const auto above = [&](int k) HWY_ATTR {

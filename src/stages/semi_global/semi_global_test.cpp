@@ -9,7 +9,7 @@ namespace {
 struct Views {
   PlaneImages left, right;
   Views(View<const std::uint8_t> l, View<const std::uint8_t> r, View<const std::uint8_t> inside, int max_disparity)
-      : left(l.size(), simd::SemiGlobalScratch::padding(max_disparity)), right(l.size(), left.pad) {
+      : left(l.size(), PlaneImages::kPadRight), right(l.size(), simd::SemiGlobalScratch::padding(max_disparity)) {
     ref::match_planes(l, inside, 0, left);
     ref::match_planes(r, inside, 0, right);
   }
