@@ -18,7 +18,7 @@ class Lane {
  public:
   Lane(const Prepared& prepared, int threads) : frames_(prepared, threads), thread_([this] { make_all(); }) {}
   ~Lane() {
-    collect();
+    state_.wait(State::kMake);
     tell(State::kStop);
     thread_.join();
   }
