@@ -11,15 +11,13 @@ trap 'rm -f "$log"' EXIT
 
 # instructions MATCHER FRAMES
 instructions() {
-  valgrind --tool=callgrind --callgrind-out-file=/dev/null "$program" "$1" "$2" >"$log" 2>&1 || { cat "$log" >&2; exit 1; }
+  valgrind --tool=callgrind --instr-atstart=no --callgrind-out-file=/dev/null "$program" "$1" "$2" >"$log" 2>&1 || { cat "$log" >&2; exit 1; }
   sed -n 's/^==[0-9]*== Collected : *\([0-9]*\).*/\1/p' "$log"
 }
 
 failed=0 new=
 while read -r matcher kept; do
-  # Rendering the scene on several threads takes a million more or less from run to run: many frames make that little.
-  many=$(instructions "$matcher" 21) one=$(instructions "$matcher" 1)
-  now=$(((many - one) / 20))
+  now=$(($(instructions "$matcher" 3) / 3))
   echo "$matcher: $now instructions a frame, kept $kept"
   new+="$matcher $now"$'\n'
   if ((now * 10 > kept * 11 || now * 10 < kept * 9)); then
