@@ -23,7 +23,7 @@ class Governor {
     const double wall = static_cast<double>(wall_ns), waiting = wall * now_ / static_cast<double>(cpu_ns);
     if (tried_ > 0) return judge(wall, waiting);
     wall_ += (wall - wall_) / (wall_ > 0 ? kSmooth : 1);
-    waiting_ += (std::min(waiting, 2 * most_waiting_) - waiting_) / kSmooth;  // one slow frame is not enough
+    waiting_ += (std::min(waiting, 1.5 * most_waiting_) - waiting_) / kSmooth;  // nor is one long wait
     rest_ -= waiting < kQuiet ? kSooner : 1;
     if (now_ > 1 && waiting_ > most_waiting_)
       try_out(now_ / 2);
@@ -32,7 +32,7 @@ class Governor {
   }
 
  private:
-  static constexpr double kSmooth = 4;       // frames
+  static constexpr double kSmooth = 8;       // frames: a moment of others is not enough
   static constexpr double kMostWaiting = 2;  // times as long as if nobody waited
   static constexpr double kQuiet = 1.1;      // where threads have their cores to themselves
   static constexpr int kTried = 3, kSooner = 4, kFirstRest = 16, kLongestRest = 256;  // frames
