@@ -85,7 +85,7 @@ std::map<std::string, std::vector<Sample>> sample_all(const fs::path& persons) {
     Pair pair;
     const auto next = pairs ? (*pairs)->next(pair) : pairs.error();
     EXPECT_TRUE(next && *next == Next::kPicture) << left;
-    if (!next) continue;
+    if (!next || *next != Next::kPicture) continue;
     const RowOffsets rows = find_row_offsets(pair, 2);
     EXPECT_TRUE(rows.matter() && rows.lens) << left;
     for (const char* matcher : {"pyramid", "sgm"})
@@ -113,12 +113,12 @@ std::vector<double> shares_of_allowed(const std::vector<Sample>& samples) {
 
 class LabDistances : public testing::Test {
  protected:
+  static fs::path persons() { return test::data_folder() / "sequences" / "persons_lab_1080p"; }
   static void SetUpTestSuite() {
-    const fs::path persons = test::data_folder() / "sequences" / "persons_lab_1080p";
-    if (fs::exists(persons)) samples_ = sample_all(persons);
+    if (fs::exists(persons())) samples_ = sample_all(persons());
   }
   void SetUp() override {
-    if (samples_.empty()) GTEST_SKIP() << "skipped: no data";
+    if (!fs::exists(persons())) GTEST_SKIP() << "skipped: no data";
   }
   static inline std::map<std::string, std::vector<Sample>> samples_;
 };

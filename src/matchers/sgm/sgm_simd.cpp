@@ -15,7 +15,8 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
       params_(params),
       max_disparity_(setup.max_disparity),
       maps_(setup.size),
-      left_(setup.size, PlaneImages::kPadRight),
+      left_(setup.size,
+            PlaneImages::kPadRight),  // as little as its stage takes: only the right view is looked up beside itself
       right_(setup.size, SemiGlobalScratch::padding(setup.max_disparity)),
       scratch_(setup.size, setup.max_disparity, params.semi_global(), pool.threads()),
       speckle_scratch_(setup.size),

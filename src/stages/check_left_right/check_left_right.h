@@ -15,7 +15,7 @@ namespace duo {
 ///
 /// check_winners: dst = winner or -1. check_left_right: dst = fine or Disparity::kNone.
 ///
-/// Shape    all H x W; inside pictures may be empty = all inside; dst may be fine itself
+/// Shape    all H x W; inside pictures may be empty = all inside; dst of ref and simd may be fine itself
 /// Units    left, right px (-1 = none); fine and dst 1/16 px
 /// Threads  rows are independent
 /// Exact    ref, simd and vk agree bit for bit

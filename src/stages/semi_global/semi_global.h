@@ -84,7 +84,9 @@ struct SemiGlobalPart {
   std::atomic<int>* done = nullptr;          // [row]: pixels finished, in the order of the walk
   const std::atomic<int>* facing = nullptr;  // of the other half; none: this is the whole row
   int facing_width = 0;
-  std::atomic<int>*sums = nullptr, *sums_of_others = nullptr;  // threads whose sums are kept, where sweeps meet
+  // Where sweeps meet: how many threads have kept their sums.
+  std::atomic<int>* sums = nullptr;
+  const std::atomic<int>* sums_of_others = nullptr;
 
   int width() const { return end - begin; }
 };

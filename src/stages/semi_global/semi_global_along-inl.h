@@ -54,12 +54,11 @@ struct Sweep {
     const std::atomic<int>& done = part.done[i];
     if (done.load(std::memory_order_acquire) < pixels) wait_until(done, std::min(part.width(), pixels + ahead));
   }
-  /// For the other half of row i. Who caught up lets the other get half as far ahead as it may.
+  /// For the other half of row i. Who caught up lets the other get half as far ahead as it may; that row's end comes after
+  /// those of all rows above.
   void wait_for_facing(int i) const {
     if (part.facing == nullptr || part.facing[i].load(std::memory_order_acquire) == part.facing_width) return;
-    const int later = std::min(part.count - 1, i + Scratch::kBehind / 2 * part.threads);
-    wait_until(part.facing[later], part.facing_width);
-    wait_until(part.facing[i], part.facing_width);  // rows of other threads may come in any order
+    wait_until(part.facing[std::min(part.count - 1, i + Scratch::kBehind / 2 * part.threads)], part.facing_width);
   }
   /// For the sweep from the other side, until all its sums are in the volume.
   void wait_for_sums() const {
