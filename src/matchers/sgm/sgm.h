@@ -7,6 +7,7 @@
 #include "core/match_setup.h"
 #include "core/pool.h"
 #include "matchers/sgm/sgm_params.h"
+#include "stages/balance/balance.h"
 #include "stages/speckle/speckle.h"
 #include "stages/weighted_median/weighted_median.h"
 
@@ -66,6 +67,7 @@ class Sgm {
   int max_disparity_;
   SgmMaps maps_;
   PlaneImages left_, right_;
+  BalanceScratch balance_scratch_;
   SemiGlobalScratch scratch_;
   SpeckleScratch speckle_scratch_;
   WeightedMedianScratch smooth_scratch_;

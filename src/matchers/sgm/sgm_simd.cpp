@@ -18,6 +18,7 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
       left_(setup.size,
             PlaneImages::kPadRight),  // as little as its stage takes: only the right view is looked up beside itself
       right_(setup.size, SemiGlobalScratch::padding(setup.max_disparity)),
+      balance_scratch_(setup.size),
       scratch_(setup.size, setup.max_disparity, params.semi_global(), pool.threads()),
       speckle_scratch_(setup.size),
       smooth_scratch_(setup.size) {}
@@ -30,7 +31,7 @@ void Sgm::match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer, Ro
   const RowBand checked_rows = params_.smooth != 0 ? rows.grown(WeightedMedian::kRadius, h) : rows;
   const RowBand joined = checked_rows.grown(params_.speckle, h);
   const int plane_rows = params_.semi_global().upward ? h : joined.end;
-  simd::balance(pool_, pair, maps_.balanced);
+  simd::balance(pool_, pair, max_disparity_, balance_scratch_, maps_.balanced);
   timer.stage("balance");
   const int noise_q4 = params_.soften != 0 ? simd::noise_q4(pool_, pair.left, pair.right) : 0;
   timer.stage("noise");

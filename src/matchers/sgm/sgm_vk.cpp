@@ -82,7 +82,8 @@ void Sgm::record_winners(Recorder& recorder, const Input& pair, BufferView<std::
   const auto balanced = whole<std::uint8_t>(maps_.balanced);
   auto softened = balanced;
   const auto left = whole<std::uint32_t>(maps_.left_planes), right = whole<std::uint32_t>(maps_.right_planes);
-  balance_.record(recorder, {pair.left, pair.right, pair.left_inside, pair.right_inside}, maps_.balance, balanced, size);
+  balance_.record(recorder, {pair.left, pair.right, pair.left_inside, pair.right_inside}, setup_.max_disparity, maps_.balance,
+                  balanced, size);
   recorder.stage("balance");
   if (params_.soften != 0)
     noise_.record(recorder, pair.left, pair.right, maps_.noise, maps_.noise_q4, size);

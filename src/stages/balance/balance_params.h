@@ -3,20 +3,42 @@
 #define DUO_BALANCE_PARAMS_H
 #include "vulkan/plane.h"
 #ifdef __cplusplus
-namespace duo::vk {
+namespace duo {
 #endif
 
-const int kBalanceGroup = 128;  // invocations that sum a row, and that make the table
-const int kBalanceSums = 3;     // words of a row: count, sum, sum of squares
+const int kBalanceCell = 8;     // px, both ways
+const int kBalanceReach = 2;    // cells to each side that a census looks at
+const int kBalanceAround = 24;  // cells of a census
+const int kBalanceApart = 7;    // from a cell of the census to the one it is compared with
+const int kBalanceAlike = 3;    // bits of a census by which two that see the same may differ
+const int kBalanceFewest = 16;  // pairs of cells
+const int kBalanceMost = 256;   // px, disparities
+
+#ifdef __cplusplus
+namespace vk {
+#endif
+
+const int kBalanceGroup = 128;        // invocations that look at a row of cells, and that make the table
+const int kBalanceSums = 3;           // words of a row of cells: count, sum, sum of squares
+const int kBalanceOutside = 1 << 24;  // in a cell's mean and in its census: not all of its pixels are inside
+
+struct BalanceCellsPush {
+  Plane left, right, left_inside, right_inside;
+  int across, down;  // cells
+  int masked;        // 0 or 1: there are inside pictures
+};
+
+struct BalanceCensusPush {
+  int across, down;
+};
 
 struct BalanceSumsPush {
-  Plane left, right, left_inside, right_inside;
-  int width, height;
-  int masked;  // 0 or 1: there are inside pictures
+  int across, down;
+  int most;  // disparity, in cells
 };
 
 struct BalanceTablePush {
-  int rows;  // of one picture
+  int down;
 };
 
 struct BalancePush {
@@ -25,6 +47,7 @@ struct BalancePush {
 };
 
 #ifdef __cplusplus
-}  // namespace duo::vk
+}  // namespace vk
+}  // namespace duo
 #endif
 #endif

@@ -14,41 +14,77 @@ HWY_BEFORE_NAMESPACE();
 namespace duo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The sums of a row's whole vectors; returns how many pixels these are. `mask` may be null.
-int sum_row(const std::uint8_t* row, const std::uint8_t* mask, int w, BrightnessSums& sums) {
-  const hn::ScalableTag<std::uint8_t> d8;
-  const hn::RepartitionToWide<decltype(d8)> d16;
-  const hn::RepartitionToWide<decltype(d16)> d32;
-  const hn::RepartitionToWide<decltype(d32)> d64;
-  const int n = static_cast<int>(hn::Lanes(d8));
-  const auto low = hn::Set(d16, 0xFF);
-  const auto low_half = hn::Set(d32, 0xFFFF);
-  auto count = hn::Zero(d64), sum = hn::Zero(d64);
-  auto squares = hn::Zero(d32);  // of four pixels a vector: 32 bits are enough for rows of 260,000 pixels
-  int x = 0;
-  for (; x + n <= w; x += n) {
-    auto v = hn::LoadU(d8, row + x);
-    auto counts = hn::Set(d8, 1);
-    if (mask != nullptr) {
-      const auto inside = hn::Ne(hn::LoadU(d8, mask + x), hn::Zero(d8));
-      v = hn::IfThenElseZero(inside, v);
-      counts = hn::IfThenElseZero(inside, counts);
+/// Sums of 8x8 pixels and whether all of these are inside, of one row of cells.
+void sum_cells(View<const std::uint8_t> picture, View<const std::uint8_t> inside, int row, int cells,
+               std::uint8_t* HWY_RESTRICT mean, std::uint8_t* HWY_RESTRICT outside) {
+  constexpr int kCell = kBalanceCell, kRun = 64, kPixels = kCell * kCell;
+  for (int first = 0; first < cells; first += kRun) {
+    const int count = std::min(kRun, cells - first), columns = count * kCell;
+    std::uint16_t sums[kRun * kCell] = {};
+    std::uint8_t none[kRun * kCell] = {};
+    for (int y = row * kCell; y < (row + 1) * kCell; ++y) {
+      const std::uint8_t* src = picture.row(y) + first * kCell;
+      for (int x = 0; x < columns; ++x) sums[x] = static_cast<std::uint16_t>(sums[x] + src[x]);
+      if (inside.empty()) continue;
+      const std::uint8_t* mask = inside.row(y) + first * kCell;
+      for (int x = 0; x < columns; ++x) none[x] |= mask[x] == 0 ? 1 : 0;
     }
-    count = hn::Add(count, hn::SumsOf8(counts));
-    sum = hn::Add(sum, hn::SumsOf8(v));
-    const auto even = hn::And(hn::BitCast(d16, v), low), odd = hn::ShiftRight<8>(hn::BitCast(d16, v));
-    const auto add_squares = [&](auto halves) HWY_ATTR {
-      const auto squared = hn::BitCast(d32, hn::Mul(halves, halves));
-      squares = hn::Add(squares, hn::Add(hn::And(squared, low_half), hn::ShiftRight<16>(squared)));
-    };
-    add_squares(even);
-    add_squares(odd);
+    for (int i = 0; i < count; ++i) {
+      int sum = kPixels / 2, any = 0;
+      for (int x = i * kCell; x < (i + 1) * kCell; ++x) sum += sums[x], any |= none[x];
+      mean[first + i] = static_cast<std::uint8_t>(sum / kPixels);
+      outside[first + i] = any != 0 ? 255 : 0;
+    }
   }
-  const auto halves = hn::BitCast(d64, squares);
-  const auto squares64 = hn::Add(hn::And(halves, hn::Set(d64, 0xFFFFFFFF)), hn::ShiftRight<32>(halves));
-  const auto total = [&](auto v) HWY_ATTR { return static_cast<std::int64_t>(hn::GetLane(hn::SumOfLanes(d64, v))); };
-  sums.add({total(count), total(sum), total(squares64)});
-  return x;
+}
+
+/// The census of one row of cells from the rows of means and of what is outside around it, whose first columns lie
+/// kBalanceReach cells before those of the census. Works on whole vectors: all rows are kPadding longer.
+void census_of_row(const std::uint8_t* const* means, const std::uint8_t* const* outside, int w, std::uint8_t* const census[3],
+                   std::uint8_t* census_outside) {
+  const hn::ScalableTag<std::uint8_t> d;
+  constexpr int kAcross = 2 * kBalanceReach + 1;
+  for (int x = 0; x < w; x += static_cast<int>(hn::Lanes(d))) {
+    const std::uint8_t* around[kBalanceAround] = {};
+    auto any = hn::Zero(d);
+    for (int y = 0, count = 0; y < kAcross; ++y)
+      for (int i = 0; i < kAcross; ++i) {
+        any = hn::Or(any, hn::LoadU(d, outside[y] + x + i));
+        if (y != kBalanceReach || i != kBalanceReach) around[count++] = means[y] + x + i;
+      }
+    hn::StoreU(any, d, census_outside + x);
+    for (int byte = 0; byte < 3; ++byte) {
+      auto bits = hn::Zero(d);
+      for (int bit = 0; bit < 8; ++bit) {
+        const int i = 8 * byte + bit, other = (i + kBalanceApart) % kBalanceAround;
+        const auto darker = hn::Lt(hn::LoadU(d, around[i]), hn::LoadU(d, around[other]));
+        bits = hn::Or(bits, hn::IfThenElseZero(darker, hn::Set(d, static_cast<std::uint8_t>(1 << bit))));
+      }
+      hn::StoreU(bits, d, census[byte] + x);
+    }
+  }
+}
+
+/// Compares w left cells with as many right ones, `disparity` cells apart; `left` and `right`: the census and where it is
+/// outside. Works on whole vectors: what lies behind a row is outside.
+void compare_cells(const std::uint8_t* const left[4], const std::uint8_t* const right[4], int w, int disparity,
+                   std::uint8_t* left_difference, std::uint8_t* left_disparity, std::uint8_t* right_difference,
+                   std::uint8_t* right_disparity) {
+  const hn::ScalableTag<std::uint8_t> d;
+  const auto nearer = hn::Set(d, static_cast<std::uint8_t>(disparity));
+  for (int x = 0; x < w; x += static_cast<int>(hn::Lanes(d))) {
+    auto difference = hn::Or(hn::LoadU(d, left[3] + x), hn::LoadU(d, right[3] + x));
+    for (int byte = 0; byte < 3; ++byte)
+      difference = hn::SaturatedAdd(difference,
+                                    hn::PopulationCount(hn::Xor(hn::LoadU(d, left[byte] + x), hn::LoadU(d, right[byte] + x))));
+    const auto keep = [&](std::uint8_t* least, std::uint8_t* where) HWY_ATTR {
+      const auto before = hn::LoadU(d, least + x);
+      hn::StoreU(hn::IfThenElse(hn::Lt(difference, before), nearer, hn::LoadU(d, where + x)), d, where + x);
+      hn::StoreU(hn::Min(difference, before), d, least + x);
+    };
+    keep(left_difference, left_disparity);
+    keep(right_difference, right_disparity);
+  }
 }
 
 /// The whole vectors of a row looked up in 256 values; returns how many pixels these are. Sixteen tables of sixteen: each gives
@@ -76,40 +112,99 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace duo {
-HWY_EXPORT(sum_row);
+HWY_EXPORT(sum_cells);
+HWY_EXPORT(census_of_row);
+HWY_EXPORT(compare_cells);
 HWY_EXPORT(look_up_row);
+
+BalanceScratch::BalanceScratch(Size picture) : cells{picture.width / kBalanceCell, picture.height / kBalanceCell} {
+  if (cells.empty()) {
+    cells = {};
+    return;
+  }
+  for (Cells* view : {&left, &right}) {
+    const Size padded{cells.width + kPadding, cells.height}, around{padded.width + 2 * kBalanceReach, cells.height};
+    for (auto* image : {&view->mean, &view->outside}) *image = Image<std::uint8_t>(around);
+    for (auto* image : {&view->census[0], &view->census[1], &view->census[2], &view->difference, &view->disparity})
+      *image = Image<std::uint8_t>(padded);
+    view->census_outside = Image<std::uint8_t>(padded);
+    // What is never written: around the picture and behind it.
+    for (int y = 0; y < cells.height; ++y) {
+      std::fill_n(view->mean.row(y), around.width, std::uint8_t{0});
+      std::fill_n(view->outside.row(y), around.width, std::uint8_t{255});
+      std::fill_n(view->difference.row(y), padded.width, std::uint8_t{255});
+      std::fill_n(view->census_outside.row(y), padded.width, std::uint8_t{255});
+      for (auto* image : {&view->census[0], &view->census[1], &view->census[2], &view->disparity})
+        std::fill_n(image->row(y), padded.width, std::uint8_t{0});
+    }
+  }
+}
 
 namespace simd {
 namespace {
 
-BrightnessSums sum_rows(View<const std::uint8_t> picture, View<const std::uint8_t> inside, int begin, int end) {
-  BrightnessSums out;
-  const int w = picture.width();
-  int done = 0;
-  for (int y = begin; y < end; ++y)
-    done = HWY_DYNAMIC_DISPATCH(sum_row)(picture.row(y), inside.empty() ? nullptr : inside.row(y), w, out);
-  const Size rest{w - done, picture.height()};
-  if (rest.width > 0)
-    out.add(brightness_sums(picture.crop(0, done, rest),
-                            inside.empty() ? View<const std::uint8_t>{} : inside.crop(0, done, rest), begin, end));
-  return out;
+void make_cells(View<const std::uint8_t> picture, View<const std::uint8_t> inside, int row, int w, BalanceScratch::Cells& out) {
+  HWY_DYNAMIC_DISPATCH(sum_cells)
+  (picture, inside, row, w, out.mean.row(row) + kBalanceReach, out.outside.row(row) + kBalanceReach);
+}
+
+/// Rows at the edges have none: they stay outside.
+void make_census(int row, Size size, BalanceScratch::Cells& cells) {
+  if (row < kBalanceReach || row >= size.height - kBalanceReach) return;
+  const std::uint8_t *means[2 * kBalanceReach + 1] = {}, *outside[2 * kBalanceReach + 1] = {};
+  for (int i = 0; i <= 2 * kBalanceReach; ++i)
+    means[i] = cells.mean.row(row + i - kBalanceReach), outside[i] = cells.outside.row(row + i - kBalanceReach);
+  std::uint8_t* const census[3] = {cells.census[0].row(row), cells.census[1].row(row), cells.census[2].row(row)};
+  HWY_DYNAMIC_DISPATCH(census_of_row)(means, outside, size.width, census, cells.census_outside.row(row));
+}
+
+void add_pairs(int row, int max_disparity, BalanceScratch& scratch, BrightnessPair& sums) {
+  BalanceScratch::Cells &left = scratch.left, &right = scratch.right;
+  const int w = scratch.cells.width, most = std::min((max_disparity + kBalanceCell - 1) / kBalanceCell, w - 1);
+  for (auto* cells : {&left, &right}) std::fill_n(cells->difference.row(row), w, std::uint8_t{255});
+  for (int d = 0; d <= most; ++d) {
+    const std::uint8_t *l[4] = {}, *r[4] = {};
+    for (std::size_t i = 0; i < 3; ++i) l[i] = left.census[i].row(row) + d, r[i] = right.census[i].row(row);
+    l[3] = left.census_outside.row(row) + d, r[3] = right.census_outside.row(row);
+    HWY_DYNAMIC_DISPATCH(compare_cells)
+    (l, r, w - d, d, left.difference.row(row) + d, left.disparity.row(row) + d, right.difference.row(row),
+     right.disparity.row(row));
+  }
+  for (int x = 0; x < w; ++x) {
+    if (left.difference.at(row, x) > kBalanceAlike) continue;
+    const int d = left.disparity.at(row, x);
+    if (right.disparity.at(row, x - d) != d) continue;
+    sums.left.add(left.mean.at(row, kBalanceReach + x));
+    sums.right.add(right.mean.at(row, kBalanceReach + x - d));
+  }
 }
 
 }  // namespace
 
 // The order in which parts are added does not change integer sums.
-void balance(Pool& pool, const GrayPair& pair, View<std::uint8_t> dst) {
-  DUO_CHECK(pair.right.size() == dst.size());
-  BrightnessSums left, right;
-  std::mutex mutex;
-  pool.rows(dst.height(), [&](int begin, int end) {
-    const BrightnessSums l = sum_rows(pair.left, pair.left_inside, begin, end);
-    const BrightnessSums r = sum_rows(pair.right, pair.right_inside, begin, end);
-    const std::lock_guard lock(mutex);
-    left.add(l);
-    right.add(r);
+void balance(Pool& pool, const GrayPair& pair, int max_disparity, BalanceScratch& scratch, View<std::uint8_t> dst) {
+  DUO_CHECK(pair.right.size() == dst.size() && max_disparity >= 1 && max_disparity <= kBalanceMost);
+  const Size cells = scratch.cells;
+  DUO_CHECK(cells.empty() || cells == (Size{dst.width() / kBalanceCell, dst.height() / kBalanceCell}));
+  pool.rows(cells.height, [&](int begin, int end) {
+    for (int row = begin; row < end; ++row) {
+      make_cells(pair.left, pair.left_inside, row, cells.width, scratch.left);
+      make_cells(pair.right, pair.right_inside, row, cells.width, scratch.right);
+    }
   });
-  alignas(16) const auto table = balance_table(left, right);
+  BrightnessPair all;
+  std::mutex mutex;
+  pool.rows(cells.height, [&](int begin, int end) {
+    BrightnessPair sums;
+    for (int row = begin; row < end; ++row) {
+      make_census(row, cells, scratch.left);
+      make_census(row, cells, scratch.right);
+      add_pairs(row, max_disparity, scratch, sums);
+    }
+    const std::lock_guard lock(mutex);
+    all.add(sums);
+  });
+  alignas(16) const auto table = balance_table(all);
   pool.rows(dst.height(), [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
       const std::uint8_t* src = pair.right.row(y);

@@ -5,7 +5,7 @@
 
 // balance_table() from the sums of rows; one workgroup. The bounds that keep all this in 64 bits stand in balance_ref.cpp.
 layout(local_size_x = kBalanceGroup) in;
-layout(std430, binding = 0) readonly buffer Rows { uint rows[]; };  // [picture][y][kBalanceSums]
+layout(std430, binding = 0) readonly buffer Rows { uint rows[]; };  // [view][y][kBalanceSums]
 layout(std430, binding = 1) writeonly buffer Table { uint table[256]; };
 layout(push_constant) uniform Push { BalanceTablePush p; };
 
@@ -36,16 +36,16 @@ uint64_t deviation_q24(Sums s) {
 
 int64_t mean_q16(Sums s) { return ((s.sum << 16) + s.count / 2) / s.count; }
 
-Sums total(int picture) {
-  return Sums(partial[picture * kBalanceSums][0], partial[picture * kBalanceSums + 1][0], partial[picture * kBalanceSums + 2][0]);
+Sums total(int view) {
+  return Sums(partial[view * kBalanceSums][0], partial[view * kBalanceSums + 1][0], partial[view * kBalanceSums + 2][0]);
 }
 
 void main() {
   const int lane = int(gl_LocalInvocationIndex);
   for (int i = 0; i < 2 * kBalanceSums; ++i) {
     int64_t sum = 0;
-    for (int y = lane; y < p.rows; y += kBalanceGroup)
-      sum += int64_t(rows[(i / kBalanceSums * p.rows + y) * kBalanceSums + i % kBalanceSums]);
+    for (int y = lane; y < p.down; y += kBalanceGroup)
+      sum += int64_t(rows[(i / kBalanceSums * p.down + y) * kBalanceSums + i % kBalanceSums]);
     partial[i][lane] = sum;
   }
   for (int half_of = kBalanceGroup / 2; half_of > 0; half_of /= 2) {
@@ -57,7 +57,7 @@ void main() {
 
   const Sums left = total(0), right = total(1);
   int64_t gain_q16 = 1 << 16, offset_q16 = 0;
-  if (left.count > 0 && right.count > 0) {
+  if (left.count >= kBalanceFewest) {
     const uint64_t from = deviation_q24(right), to = deviation_q24(left);
     if (from > 0 && to > 0) gain_q16 = int64_t(((to << 16) + from / 2) / from);
     offset_q16 = mean_q16(left) - ((gain_q16 * mean_q16(right) + (1 << 15)) >> 16);

@@ -12,7 +12,7 @@ class Balance {
   struct Input {
     BufferView<std::uint8_t> left = {}, right = {}, left_inside = {}, right_inside = {};
   };
-  /// Sums of rows and the table; one for each recording that may run at the same time as another.
+  /// Cells, sums of their rows and the table; one for each recording that may run at the same time as another.
   class Scratch {
    public:
     /// Errors  out of memory
@@ -21,13 +21,14 @@ class Balance {
    private:
     friend Balance;
     Size size_;
-    Buffer rows_, table_;
+    Buffer cells_, census_, rows_, table_;
   };
   static Result<Balance> make(const Device& device);
-  void record(Recorder& recorder, const Input& pair, const Scratch& scratch, BufferView<std::uint8_t> dst, Size size) const;
+  void record(Recorder& recorder, const Input& pair, int max_disparity, const Scratch& scratch, BufferView<std::uint8_t> dst,
+              Size size) const;
 
  private:
-  Kernel sums_, table_, look_up_;
+  Kernel cells_, census_, sums_, table_, look_up_;
 };
 
 }  // namespace duo::vk

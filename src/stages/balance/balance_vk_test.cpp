@@ -14,21 +14,26 @@ void expect_agrees(vk::Device& device, const vk::Balance& balance, vk::Recorder&
   Image<std::uint8_t> left(size), right(size), left_inside(size), right_inside(size);
   test::fill(left.view(), how, rng);
   test::fill(right.view(), test::Fill::kRandom, rng);
-  test::fill(left_inside.view(), test::Fill::kLow, rng);
-  test::fill(right_inside.view(), test::Fill::kLow, rng);
+  for (auto* inside : {&left_inside, &right_inside}) {
+    test::fill(inside->view(), test::Fill::kHigh, rng);
+    for (int hole = 0; hole < 3; ++hole)
+      inside->at(static_cast<int>(rng() % static_cast<unsigned>(size.height)),
+                 static_cast<int>(rng() % static_cast<unsigned>(size.width))) = 0;
+  }
   const auto scratch = must(vk::Balance::Scratch::make(device, size));
   for (const bool masked : {false, true}) {
     GrayPair pair{left, right};
     if (masked) pair.left_inside = left_inside, pair.right_inside = right_inside;
     Image<std::uint8_t> want(size);
-    ref::balance(pair, want);
+    const int max_disparity = masked ? 40 : 256;
+    ref::balance(pair, max_disparity, want);
 
     const OnDevice<std::uint8_t> l(device, left, "left"), r(device, right, "right"), li(device, left_inside, "left inside"),
         ri(device, right_inside, "right inside"), dst(device, size, "dst");
     vk::Balance::Input input{l.view(), r.view()};
     if (masked) input.left_inside = li.view(), input.right_inside = ri.view();
     test::run_with(
-        recorder, [&] { balance.record(recorder, input, scratch, dst.view(), size); }, l, r, li, ri, dst);
+        recorder, [&] { balance.record(recorder, input, max_disparity, scratch, dst.view(), size); }, l, r, li, ri, dst);
     const std::string what = std::string("balance") + (masked ? " masked" : "") + where;
     test::expect_same<std::uint8_t>(want, dst.pixels(what), what);
   }
@@ -38,7 +43,7 @@ TEST(BalanceVk, Agrees) {
   test::each_device([](vk::Device& device, const std::string& where) {
     const auto balance = must(vk::Balance::make(device));
     auto recorder = must(vk::Recorder::make(device));
-    for (const Size size : {Size{1, 1}, Size{3, 2}, Size{131, 37}, Size{17, 300}})
+    for (const Size size : {Size{1, 1}, Size{3, 200}, Size{131, 37}, Size{17, 300}, Size{643, 90}})
       for (const test::Fill how : test::kFills) {
         expect_agrees(device, balance, recorder, size, how, where);
         if (::testing::Test::HasFailure()) return;
