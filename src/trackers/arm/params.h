@@ -6,7 +6,7 @@ namespace duo::arm {
 
 struct Params {
   // The body. Stereo sees skin; a joint lies behind it along the viewing ray.
-  double hand_depth_m = 0.018;      // half the thickness of a hand
+  double hand_depth_m = 0.012;      // half the thickness of a hand
   double elbow_depth_m = 0.045;     // radius of an elbow
   double shoulder_depth_m = 0.062;  // radius of a shoulder with its cloth
   double upper_radius_m = 0.045;    // of the upper arm
