@@ -11,6 +11,9 @@ target_compile_options(duoptic_flags INTERFACE -Wall -Wextra -Werror -ffp-contra
 set(DUO_DISABLED_TARGETS "HWY_SSSE3|HWY_AVX3" CACHE STRING "Instruction sets not to compile for, as Highway's HWY_ names joined by |")
 target_compile_definitions(duoptic_flags INTERFACE HWY_BROKEN_EMU128=0 HWY_WANT_AVX3_DL "HWY_DISABLED_TARGETS=(${DUO_DISABLED_TARGETS})")
 
+# Kernels are the same for every compiler and its options: another build folder's can be taken.
+set(DUO_SPIRV "${PROJECT_BINARY_DIR}/spirv" CACHE PATH "Folder of the compiled kernels; one that is not this build's must be complete")
+
 # SPIR-V as numbers to include, for the library's kernels or for another target and an older Vulkan.
 function(duoptic_shader source)
   cmake_parse_arguments(ARG "" "TARGET;VULKAN" "" ${ARGN})
@@ -19,9 +22,12 @@ function(duoptic_shader source)
     set(ARG_VULKAN 1.3)
   endif()
   get_filename_component(name ${source} NAME)
-  set(out ${PROJECT_BINARY_DIR}/spirv/${name}.inc)
+  set(out ${DUO_SPIRV}/${name}.inc)
+  if(NOT DUO_SPIRV STREQUAL "${PROJECT_BINARY_DIR}/spirv")
+    return()
+  endif()
   add_custom_command(OUTPUT ${out}
-    COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/spirv
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${DUO_SPIRV}
     COMMAND ${DUO_GLSLC} -O --target-env=vulkan${ARG_VULKAN} -I ${PROJECT_SOURCE_DIR}/src -mfmt=num -MD -MF ${out}.d -o ${out} ${source}
     DEPENDS ${source} DEPFILE ${out}.d COMMENT "SPIR-V ${name}" VERBATIM)
   target_sources(${ARG_TARGET} PRIVATE ${out})
@@ -54,11 +60,11 @@ function(duoptic_test name)
   endif()
 endfunction()
 
-# duoptic_vulkan_test(NAME [SOURCES...] [EVERY_SIZE] [ASSISTED]): one program, run at subgroups of 8, with EVERY_SIZE also of 4 and 16, what
+# duoptic_vulkan_test(NAME [SOURCES...] [EVERY_SIZE] [ASSISTED] [SLOW]): one program, run at subgroups of 8, with EVERY_SIZE also of 4 and 16, what
 # the software driver can take; with ASSISTED once more with every access of the kernels checked. Sanitizers do not see inside kernels: once.
 function(duoptic_vulkan_test name)
-  cmake_parse_arguments(ARG "EVERY_SIZE;ASSISTED" "" "" ${ARGN})
-  if(NOT DUO_TESTS OR NOT DUO_VULKAN)
+  cmake_parse_arguments(ARG "EVERY_SIZE;ASSISTED;SLOW" "" "" ${ARGN})
+  if(NOT DUO_TESTS OR NOT DUO_VULKAN OR (ARG_SLOW AND NOT DUO_SLOW_TESTS))
     return()
   endif()
   duoptic_test(${name} ${ARG_UNPARSED_ARGUMENTS})
@@ -95,7 +101,7 @@ function(duoptic_stage name)
       duoptic_shader(${dir}/${shader}.comp)
     endforeach()
     target_sources(duoptic PRIVATE ${dir}/${name}_vk.cpp)
-    if(DUO_TESTS)
+    if(TARGET stages_vk_test)
       target_sources(stages_vk_test PRIVATE ${dir}/${name}_vk_test.cpp)
     endif()
   endif()

@@ -12,7 +12,7 @@ target_sources(duoptic_tool PRIVATE
   ${dir}/textures.cpp
   ${dir}/view.cpp
   ${dir}/window.cpp)
-target_include_directories(duoptic_tool PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
+target_include_directories(duoptic_tool PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${DUO_SPIRV}/..)
 target_link_libraries(duoptic_tool PRIVATE PkgConfig::IMGUI glfw Vulkan::Vulkan)
 target_compile_definitions(duoptic_tool PRIVATE DUO_VIEWER)
 duoptic_shader(${dir}/picture.vert TARGET duoptic_tool VULKAN 1.0)

@@ -1,5 +1,5 @@
 # Explicit names, no glob: what is not listed is not built.
-duoptic_vulkan_test(stages/vk EVERY_SIZE ASSISTED)  # each stage with a kernel adds its file
+duoptic_vulkan_test(stages/vk EVERY_SIZE ASSISTED SLOW)  # each stage with a kernel adds its file
 duoptic_stage(gray VULKAN)
 duoptic_stage(median VULKAN)
 duoptic_stage(rectify VULKAN)

@@ -74,7 +74,7 @@ TEST(Soak, MemoryStandsStillAndLinesAreInTime) {
   using namespace std::chrono_literals;
   const char* asked = std::getenv("DUOPTIC_SOAK_S");
   const bool alone = asked != nullptr;
-  const int seconds = alone ? std::max(20, std::atoi(asked)) : 60;
+  const int seconds = alone ? std::max(20, std::atoi(asked)) : 30;
   const Size size = alone ? Size{640, 480} : Size{320, 240};
   const test::TempFolder folder;
   std::vector<std::string> arguments = clicks(size);
