@@ -1,6 +1,7 @@
 // Brightness of the right picture brought to the left one's: two webcams never agree on exposure and gain.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -18,8 +19,9 @@ namespace duo {
 /// and offset the picture has, and more than whether the cell is the darkest around. Left cell x and right cell x - d,
 /// d = 0 .. ceil(max_disparity / 8), differ by as much as bits of their census, and see the same where these are at most
 /// kBalanceAlike and each is the other's nearest, the smallest d of equals. Only cells whose census lies inside the picture and
-/// the raw one take part. With fewer than kBalanceFewest such pairs dst = right; where either side of them is flat they are
-/// only shifted.
+/// the raw one take part, and pairs count of which neither is darker than kBalanceDark or brighter than kBalanceBright, where
+/// cameras cut off. With fewer than kBalanceFewest such pairs dst = right; where either side of them is flat they are only
+/// shifted.
 ///
 /// Shape    pair H x W, dst the same; cells H / 8 x W / 8, whole ones
 /// Units    max_disparity px, 1 .. 256
@@ -63,6 +65,11 @@ struct BrightnessSums {
 /// Of the cells that see the same: equal counts.
 struct BrightnessPair {
   BrightnessSums left, right;
+  /// A pair of cells, if it counts.
+  void add(int left_mean, int right_mean) {
+    if (std::min(left_mean, right_mean) < kBalanceDark || std::max(left_mean, right_mean) > kBalanceBright) return;
+    left.add(left_mean), right.add(right_mean);
+  }
   void add(const BrightnessPair& other) { left.add(other.left), right.add(other.right); }
 };
 

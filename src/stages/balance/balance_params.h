@@ -6,13 +6,15 @@
 namespace duo {
 #endif
 
-const int kBalanceCell = 8;     // px, both ways
-const int kBalanceReach = 2;    // cells to each side that a census looks at
-const int kBalanceAround = 24;  // cells of a census
-const int kBalanceApart = 7;    // from a cell of the census to the one it is compared with
-const int kBalanceAlike = 3;    // bits of a census by which two that see the same may differ
-const int kBalanceFewest = 16;  // pairs of cells
-const int kBalanceMost = 256;   // px, disparities
+const int kBalanceCell = 8;      // px, both ways
+const int kBalanceReach = 2;     // cells to each side that a census looks at
+const int kBalanceAround = 24;   // cells of a census
+const int kBalanceApart = 7;     // from a cell of the census to the one it is compared with
+const int kBalanceAlike = 3;     // bits of a census by which two that see the same may differ
+const int kBalanceDark = 8;      // a mean below has pixels that are cut off, likely
+const int kBalanceBright = 247;  // and one above
+const int kBalanceFewest = 16;   // pairs of cells
+const int kBalanceMost = 256;    // px, disparities
 
 #ifdef __cplusplus
 namespace vk {

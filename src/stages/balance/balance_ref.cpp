@@ -131,8 +131,7 @@ void balance(const GrayPair& pair, int max_disparity, View<std::uint8_t> dst) {
     for (int x = 0; x < static_cast<int>(left[row].size()); ++x) {
       const int there = nearest(left[row], x, right[row], -1, most);
       if (there < 0 || nearest(right[row], there, left[row], 1, most) != x) continue;
-      sums.left.add(left[row][static_cast<std::size_t>(x)].mean);
-      sums.right.add(right[row][static_cast<std::size_t>(there)].mean);
+      sums.add(left[row][static_cast<std::size_t>(x)].mean, right[row][static_cast<std::size_t>(there)].mean);
     }
   const auto table = balance_table(sums);
   for (int y = 0; y < dst.height(); ++y)

@@ -174,8 +174,7 @@ void add_pairs(int row, int max_disparity, BalanceScratch& scratch, BrightnessPa
     if (left.difference.at(row, x) > kBalanceAlike) continue;
     const int d = left.disparity.at(row, x);
     if (right.disparity.at(row, x - d) != d) continue;
-    sums.left.add(left.mean.at(row, kBalanceReach + x));
-    sums.right.add(right.mean.at(row, kBalanceReach + x - d));
+    sums.add(left.mean.at(row, kBalanceReach + x), right.mean.at(row, kBalanceReach + x - d));
   }
 }
 

@@ -41,6 +41,7 @@ void main() {
     const int d = nearest(left, x, right, -1);
     if (d < 0 || nearest(right, x - d, left, 1) != d) continue;
     const uint l = cells[left + x], r = cells[right + x - d];
+    if (min(l, r) < kBalanceDark || max(l, r) > kBalanceBright) continue;
     left_sums += uvec3(1, l, l * l);
     right_sums += uvec3(1, r, r * r);
   }

@@ -55,6 +55,17 @@ TEST(Balance, GainAndOffsetComeBack) {
   for (int x = 0; x < 20 * 8; x += 8) EXPECT_NEAR(got.at(40, x), left.at(40, x + 24), 1) << x;
 }
 
+// The left camera is overexposed: what it cuts off at 255 says nothing of the gain, 2.
+TEST(Balance, WhatIsCutOffDoesNotCount) {
+  const Size cells{24, 24};
+  const auto left = of_cells(cells, [](int y, int x) { return std::min(255, 2 * pattern(y, x)); });
+  const auto right = of_cells(cells, [](int y, int x) { return pattern(y, x + 1); });
+  const auto got = balanced({left, right}, 16);
+  for (int x = 8; x < 20 * 8; x += 8) {
+    if (left.at(80, x + 8) < 240) EXPECT_NEAR(got.at(80, x), left.at(80, x + 8), 3) << x;
+  }
+}
+
 TEST(Balance, OutsideDoesNotCount) {
   const Size cells{24, 12};
   const auto left = of_cells(cells, [](int y, int x) { return x < 12 ? pattern(y, x) : 255; });
