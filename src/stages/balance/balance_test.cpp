@@ -62,7 +62,8 @@ TEST(Balance, WhatIsCutOffDoesNotCount) {
   const auto right = of_cells(cells, [](int y, int x) { return pattern(y, x + 1); });
   const auto got = balanced({left, right}, 16);
   for (int x = 8; x < 20 * 8; x += 8) {
-    if (left.at(80, x + 8) < 240) EXPECT_NEAR(got.at(80, x), left.at(80, x + 8), 3) << x;
+    if (left.at(80, x + 8) >= 240) continue;
+    EXPECT_NEAR(got.at(80, x), left.at(80, x + 8), 3) << x;
   }
 }
 
