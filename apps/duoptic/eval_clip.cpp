@@ -62,7 +62,7 @@ Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, con
   const std::string left = (folder / "left.avi").string(), right = (folder / "right.avi").string();
   DUO_TRY_ASSIGN(Input input, open_input(left, right, rig, truth.skew_ms));
   ArmOptions arm = options;
-  arm.all_maps = arm.in_bulk = true;
+  arm.all_maps = true;  // and not in bulk: other frames would be made while a frame is scored
   DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(input), arm, score.first));
   const Rectified& rectified = run.header().rectified;
   std::unique_ptr<Sink> sink;

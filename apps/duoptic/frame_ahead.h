@@ -52,7 +52,7 @@ class FrameAhead {
   Result<Next> next() { return frames_->next(last_); }
   /// Lives until next() gives another.
   const Matched& last() const { return last_; }
-  /// Before the end: until the next frame is ready; matching then rests.
+  /// Before the end: until the next frame is ready; with one at once, matching then rests.
   void wait() { frames_->wait(); }
   /// Before the end, and with one at once: another setup for the engine. The last frame and the one that is ready are made
   /// anew.
@@ -99,10 +99,11 @@ class FrameAhead {
       }
     }
     if (in_engine_ == 0) return *end_;
-    collect(ring_[oldest_]);
-    std::swap(into, ring_[oldest_].matched);
-    oldest_ = (oldest_ + 1) % ring_.size();
+    InEngine& done = ring_[oldest_];
+    oldest_ = (oldest_ + 1) % ring_.size();  // first: what cannot be collected is not collected again
     --in_engine_;
+    collect(done);
+    std::swap(into, done.matched);
     return Next::kPicture;
   }
   Result<Next> read_pair(Pair& into) {
@@ -110,6 +111,7 @@ class FrameAhead {
       DUO_TRY_ASSIGN(const Next next, pairs_ ? pairs_->next(into) : source_->next(into));
       if (next != Next::kPicture) return next;
       if (read_ == 0) start_ns_ = into.left.t_ns;
+      if (read_ + 1 == first_) in_step_.right_of(into);                       // from which the first one is told to have moved
       if (read_ < first_ && source_->live()) return ++read_, Next::kNothing;  // it may be long: who waits may want to stop
     } while (read_++ < first_);
     return Next::kPicture;

@@ -138,6 +138,8 @@ Result<void> first_frame(ArmRun& run, Events& events, std::int64_t number, const
 }
 
 struct Summary {
+  static constexpr std::size_t kTimes = 100'000;  // of the first frames; cameras may run for days
+  std::size_t frames = 0;
   std::vector<double> engine_ms, tracker_ms, latency_ms;  // latency: live, from capture to all sinks
   Next end = Next::kEnd;
   std::string dropped;  // by each sink that did
@@ -155,10 +157,12 @@ Result<Summary> track_all(ArmRun& run, Events& events, const Recording& recordin
     TrackedFrame frame = run.tracked(run.track());
     if (options.stats) frame.times = run.times();
     for (const auto& [name, sink] : sinks) DUO_TRY(sink->write(frame));
-    summary.engine_ms.push_back(run.times().engine_ms);
-    summary.tracker_ms.push_back(run.times().tracker_ms);
-    if (run.header().live)
-      summary.latency_ms.push_back(clock_ms(CLOCK_MONOTONIC) - static_cast<double>(frame.left.t_ns) * 1e-6);
+    if (summary.frames++ < Summary::kTimes) {
+      summary.engine_ms.push_back(run.times().engine_ms);
+      summary.tracker_ms.push_back(run.times().tracker_ms);
+      if (run.header().live)
+        summary.latency_ms.push_back(clock_ms(CLOCK_MONOTONIC) - static_cast<double>(frame.left.t_ns) * 1e-6);
+    }
     progress.frame(frame.number + 1);
     events.look_at(recording);
     if (const auto warning = run.header().live ? skew.see(frame) : std::nullopt) say(app, "warning: " + *warning);
@@ -171,7 +175,7 @@ Result<Summary> track_all(ArmRun& run, Events& events, const Recording& recordin
 }
 
 std::string text_of(const Summary& summary, double seconds, const ArmRun& run, const Options& options) {
-  const std::size_t frames = summary.engine_ms.size();
+  const std::size_t frames = summary.frames;
   const std::string dropped =
       run.header().live ? fmt::format(", {} dropped, latency {:.1f} ms", run.frames().dropped(), median(summary.latency_ms))
                         : std::string();

@@ -1,6 +1,7 @@
 #include "core/pool.h"
 
 #include <algorithm>
+#include <system_error>
 
 #include "core/check.h"
 #include "core/clock.h"
@@ -10,7 +11,11 @@ namespace duo {
 Pool::Pool(int threads) : in_use_(threads) {
   DUO_CHECK(threads >= 1);
   workers_.reserve(static_cast<std::size_t>(threads - 1));
-  for (int part = 1; part < threads; ++part) workers_.emplace_back([this, part] { work(part); });
+  try {
+    for (int part = 1; part < threads; ++part) workers_.emplace_back([this, part] { work(part); });
+  } catch (const std::system_error&) {  // the system allows no more: those there are do all
+    in_use_ = most();
+  }
 }
 
 Pool::~Pool() {

@@ -11,7 +11,7 @@
 
 namespace duo {
 
-/// Runs one job at a time on `threads` threads, the caller being one of them.
+/// Runs one job at a time on `threads` threads, the caller being one of them; on fewer where the system allows no more.
 ///
 /// Threads  one caller at a time
 class Pool {
@@ -55,7 +55,6 @@ class Pool {
   void compute(int begin, int end, int part);
   void work(int part);
 
-  std::vector<std::jthread> workers_;
   std::mutex mutex_;
   std::condition_variable start_, done_;
   std::uint64_t round_ = 0;
@@ -67,6 +66,7 @@ class Pool {
   void* context_ = nullptr;
   std::int64_t wall_ns_ = 0;
   std::atomic<std::int64_t> cpu_ns_ = 0;
+  std::vector<std::jthread> workers_;  // last: they use all of the above
 };
 
 }  // namespace duo

@@ -1,9 +1,11 @@
 #include "core/governor.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <thread>
 #include <vector>
 
@@ -116,6 +118,26 @@ TEST(Pool, TellsWhatItsThreadsTook) {
     EXPECT_EQ(pool.take_effort().wall_ns, 0);
   }
 }
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define DUO_SANITIZED
+#endif
+#endif
+#ifndef DUO_SANITIZED  // whose own memory is more than the limit
+/// In a process of its own, whose memory has room for the stacks of a few threads.
+[[noreturn]] void ask_for_too_many() {
+  rlimit room = {};
+  room.rlim_cur = room.rlim_max = std::size_t{1} << 28;
+  setrlimit(RLIMIT_AS, &room);
+  Pool pool(200);
+  std::atomic<int> sum = 0;
+  pool.rows(1000, [&](int begin, int end) { sum += end - begin; });
+  std::_Exit(pool.threads() < 200 && pool.threads() == pool.most() && sum == 1000 ? 0 : 1);
+}
+
+TEST(Pool, DoesWithTheThreadsThatThereMayBe) { EXPECT_EXIT(ask_for_too_many(), testing::ExitedWithCode(0), ""); }
+#endif
 
 }  // namespace
 }  // namespace duo

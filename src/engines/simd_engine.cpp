@@ -1,9 +1,13 @@
 // The fast CPU engine: one frame by all threads, or several at once by some each.
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <memory>
+#include <new>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/check.h"
@@ -73,16 +77,19 @@ class SimdEngine final : public Engine {
 
   Result<void> prepare(const Setup& setup) override {
     DUO_TRY_ASSIGN(Prepared checked, prepare_setup(setup));
-    alone_.reset();  // first: they speak of the old setup, and there need not be memory for both
-    lanes_.clear();
-    prepared_ = std::move(checked);
-    first_ = count_ = 0;
-    const int at_once = frames_at_once(setup, threads_);
-    if (at_once == 1) {
-      alone_ = std::make_unique<SimdFrames>(prepared_, threads_);
-    } else {
-      for (int i = 0; i < at_once; ++i)
-        lanes_.push_back(std::make_unique<Lane>(prepared_, threads_ / at_once + (i < threads_ % at_once)));
+    const bool was_prepared = alone_ != nullptr || !lanes_.empty();
+    rest();
+    std::swap(prepared_, checked);
+    try {
+      make_frames();
+    } catch (const std::bad_alloc&) {
+      rest();
+      std::swap(prepared_, checked);
+      if (was_prepared) make_frames();  // there was memory for that
+      return Error{ErrorCode::kUnsupported,
+                   fmt::format("cannot set up {}x{} pixels with {} disparities: out of memory; smaller pictures, fewer "
+                               "disparities or fewer paths need less",
+                               setup.size.width, setup.size.height, setup.max_disparity)};
     }
     return {};
   }
@@ -109,6 +116,22 @@ class SimdEngine final : public Engine {
   }
 
  private:
+  /// What speaks of the last setup goes first: there need not be memory for both.
+  void rest() {
+    alone_.reset();
+    lanes_.clear();
+    first_ = count_ = 0;
+  }
+  void make_frames() {
+    const int at_once = frames_at_once(prepared_.setup, threads_);
+    if (at_once == 1) {
+      alone_ = std::make_unique<SimdFrames>(prepared_, threads_);
+    } else {
+      for (int i = 0; i < at_once; ++i)
+        lanes_.push_back(std::make_unique<Lane>(prepared_, threads_ / at_once + (i < threads_ % at_once)));
+    }
+  }
+
   Lane& lane(int frame) { return *lanes_[static_cast<std::size_t>(frame % in_flight())]; }
 
   const int threads_;

@@ -10,6 +10,7 @@
 #include "core/pool.h"
 #include "core/tile_sets.h"
 #include "matchers/pyramid/pyramid_params.h"
+#include "stages/balance/balance.h"
 #include "stages/match_around/match_around.h"
 #include "stages/match_tiles/match_tiles.h"
 #include "stages/speckle/speckle.h"
@@ -60,6 +61,7 @@ class Pyramid {
   PyramidParams params_;
   std::vector<PyramidLevel> levels_;
   Image<std::uint16_t> filtered_;
+  Image<std::uint8_t> balanced_;  // the right picture
 };
 
 }  // namespace ref
@@ -82,6 +84,8 @@ class Pyramid {
   PyramidParams params_;
   std::vector<PyramidLevel> levels_;
   Image<std::uint16_t> filtered_;
+  Image<std::uint8_t> balanced_;  // the right picture
+  BalanceScratch balance_scratch_;
   std::vector<MatchAroundScratch> around_scratch_;
   std::vector<MatchTilesScratch> tiles_scratch_;
   SpeckleScratch speckle_scratch_;

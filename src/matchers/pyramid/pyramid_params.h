@@ -14,6 +14,7 @@ struct PyramidParams {
     kTiles,   // each tile tries all that its neighbourhood found below
   };
   Search search = Search::kTiles;
+  int balance = 1;
   int levels = 4;
   int d_t_half_px = 3;
   int truncation = 12;
@@ -28,6 +29,7 @@ struct PyramidParams {
 };
 
 inline constexpr Parameter<PyramidParams> kPyramidParameters[] = {
+    {"balance", &PyramidParams::balance, "", 0, 1, "the right picture's brightness is brought to the left one's: 1 on, 0 off"},
     {"levels", &PyramidParams::levels, "", 1, 4, "levels of the pyramid, the full picture included"},
     {"d-t", &PyramidParams::d_t_half_px, "px/2", 1, 3, "thesis only: D_T, the search radius of level n is 2^(n-1) D_T"},
     {"truncation", &PyramidParams::truncation, "", 1, 12, "most that one channel can add to a pixel's cost"},

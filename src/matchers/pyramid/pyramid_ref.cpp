@@ -11,9 +11,18 @@
 namespace duo::ref {
 
 Pyramid::Pyramid(const PyramidParams& params, const MatchSetup& setup)
-    : params_(params), levels_(make_levels(params, setup)), filtered_(setup.size) {}
+    : params_(params),
+      levels_(make_levels(params, setup)),
+      filtered_(setup.size),
+      balanced_(params.balance != 0 ? setup.size : Size{}) {}
 
-void Pyramid::match(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer) {
+void Pyramid::match(const GrayPair& raw, View<std::uint16_t> d_q4, StageTimer& timer) {
+  GrayPair pair = raw;
+  if (params_.balance != 0) {
+    ref::balance(raw, levels_[0].max_disparity, balanced_);
+    pair.right = balanced_;
+    timer.stage("balance");
+  }
   for (int i = 1; i < params_.levels; ++i) {
     const GrayPair finer = pair_of(pair, i - 1);
     PyramidLevel& level = levels_[static_cast<std::size_t>(i)];
@@ -46,20 +55,23 @@ void Pyramid::match_tiles(const GrayPair& pair, View<std::uint16_t> d_q4, StageT
   for (int i = params_.levels - 1; i >= 0; --i) {
     PyramidLevel& level = levels_[static_cast<std::size_t>(i)];
     const MatchTilesParams params{params_.truncation, params_.sobel_clip, i == 0};
-    ref::match_tiles(pair_of(pair, i), level.sets, params,
-                      {level.left_winner, level.right_winner, level.fine});
+    ref::match_tiles(pair_of(pair, i), level.sets, params, {level.left_winner, level.right_winner, level.fine});
     timer.stage("match_tiles");
     if (i == 0) break;
     const GrayPair here = level.pair();
-    ref::check_winners({level.left_winner, level.right_winner, here.left_inside, here.right_inside, params_.tolerance, 0}, level.checked);
-    ref::tile_candidates({level.checked, level.left_winner, params_.grow, params_.margin}, levels_[static_cast<std::size_t>(i - 1)].sets);
+    ref::check_winners({level.left_winner, level.right_winner, here.left_inside, here.right_inside, params_.tolerance, 0},
+                       level.checked);
+    ref::tile_candidates({level.checked, level.left_winner, params_.grow, params_.margin},
+                         levels_[static_cast<std::size_t>(i - 1)].sets);
     timer.stage("tile_candidates");
   }
   PyramidLevel& full = levels_[0];
   // Medians go back and forth between two images; the check starts in the one from which the last median ends in d_q4.
-  View<std::uint16_t> now = params_.medians % 2 == 0 ? d_q4 : filtered_.view(), next = params_.medians % 2 == 0 ? filtered_.view() : d_q4;
+  View<std::uint16_t> now = params_.medians % 2 == 0 ? d_q4 : filtered_.view(),
+                      next = params_.medians % 2 == 0 ? filtered_.view() : d_q4;
   ref::check_left_right(
-      {full.left_winner, full.right_winner, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach}, full.fine, now);
+      {full.left_winner, full.right_winner, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach}, full.fine,
+      now);
   timer.stage("check_left_right");
   for (int i = 0; i < params_.medians; ++i, std::swap(now, next)) ref::median3x3(now, next);
   timer.stage("median");

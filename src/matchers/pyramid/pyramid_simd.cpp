@@ -11,7 +11,13 @@
 namespace duo::simd {
 
 Pyramid::Pyramid(Pool& pool, const PyramidParams& params, const MatchSetup& setup)
-    : pool_(pool), params_(params), levels_(make_levels(params, setup)), filtered_(setup.size), speckle_scratch_(setup.size) {
+    : pool_(pool),
+      params_(params),
+      levels_(make_levels(params, setup)),
+      filtered_(setup.size),
+      balanced_(params.balance != 0 ? setup.size : Size{}),
+      balance_scratch_(balanced_.size()),
+      speckle_scratch_(setup.size) {
   for (const PyramidLevel& level : levels_)
     if (params.search == PyramidParams::Search::kAround)
       around_scratch_.emplace_back(level.size);
@@ -19,7 +25,13 @@ Pyramid::Pyramid(Pool& pool, const PyramidParams& params, const MatchSetup& setu
       tiles_scratch_.emplace_back(level.size, level.max_disparity, pool.threads());
 }
 
-void Pyramid::match(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer) {
+void Pyramid::match(const GrayPair& raw, View<std::uint16_t> d_q4, StageTimer& timer) {
+  GrayPair pair = raw;
+  if (params_.balance != 0) {
+    simd::balance(pool_, raw, levels_[0].max_disparity, balance_scratch_, balanced_);
+    pair.right = balanced_;
+    timer.stage("balance");
+  }
   for (int i = 1; i < params_.levels; ++i) {
     const GrayPair finer = pair_of(pair, i - 1);
     PyramidLevel& level = levels_[static_cast<std::size_t>(i)];
@@ -57,15 +69,20 @@ void Pyramid::match_tiles(const GrayPair& pair, View<std::uint16_t> d_q4, StageT
     timer.stage("match_tiles");
     if (i == 0) break;
     const GrayPair here = level.pair();
-    simd::check_winners(pool_, {level.left_winner, level.right_winner, here.left_inside, here.right_inside, params_.tolerance, 0}, level.checked);
-    simd::tile_candidates(pool_, {level.checked, level.left_winner, params_.grow, params_.margin}, levels_[static_cast<std::size_t>(i - 1)].sets);
+    simd::check_winners(pool_,
+                        {level.left_winner, level.right_winner, here.left_inside, here.right_inside, params_.tolerance, 0},
+                        level.checked);
+    simd::tile_candidates(pool_, {level.checked, level.left_winner, params_.grow, params_.margin},
+                          levels_[static_cast<std::size_t>(i - 1)].sets);
     timer.stage("tile_candidates");
   }
   PyramidLevel& full = levels_[0];
   // Medians go back and forth between two images; the check starts in the one from which the last median ends in d_q4.
-  View<std::uint16_t> now = params_.medians % 2 == 0 ? d_q4 : filtered_.view(), next = params_.medians % 2 == 0 ? filtered_.view() : d_q4;
+  View<std::uint16_t> now = params_.medians % 2 == 0 ? d_q4 : filtered_.view(),
+                      next = params_.medians % 2 == 0 ? filtered_.view() : d_q4;
   simd::check_left_right(
-      pool_, {full.left_winner, full.right_winner, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach}, full.fine, now);
+      pool_, {full.left_winner, full.right_winner, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach},
+      full.fine, now);
   timer.stage("check_left_right");
   for (int i = 0; i < params_.medians; ++i, std::swap(now, next)) simd::median3x3(pool_, now, next);
   timer.stage("median");

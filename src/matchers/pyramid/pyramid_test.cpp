@@ -7,8 +7,8 @@
 namespace duo {
 namespace {
 
-// The thesis counts 9,196,800 comparisons for 640x480: 80*60*80 + 160*120*7 + 320*240*13 + 640*480*25. Flat pictures are enough:
-// the number does not depend on what is found.
+// The thesis counts 9,196,800 comparisons for 640x480: 80*60*80 + 160*120*7 + 320*240*13 + 640*480*25. Flat pictures are
+// enough: the number does not depend on what is found.
 TEST(Pyramid, ThesisComparesAsOftenAsTheThesis) {
   const PyramidParams params = *pyramid_params("thesis", {});
   const std::vector<PyramidLevel> levels = make_levels(params, {{640, 480}, 128, false});
@@ -60,7 +60,8 @@ void expect_engines_agree(Size size, int max_disparity, const char* preset, bool
       simd::Pyramid matcher(pool, params, setup);
       for (int frame = 0; frame < 2; ++frame) {  // a second frame must not see anything of the first
         matcher.match(pair, got, timer);
-        test::expect_same<std::uint16_t>(want, got, std::string("pyramid ") + preset + " simd " + target + " threads " + std::to_string(threads));
+        test::expect_same<std::uint16_t>(
+            want, got, std::string("pyramid ") + preset + " simd " + target + " threads " + std::to_string(threads));
       }
     }
   });

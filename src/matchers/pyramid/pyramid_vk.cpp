@@ -22,6 +22,9 @@ Result<Pyramid> Pyramid::make(const Device& device, const PyramidParams& params,
   out.params_ = params;
   out.masked_ = setup.masked;
   DUO_TRY_ASSIGN(out.halve_, Halve::make(device));
+  if (params.balance != 0) {
+    DUO_TRY_ASSIGN(out.balanced_, make_balanced(device, setup.size));
+  }
   if (params.search == PyramidParams::Search::kAround) {
     DUO_TRY_ASSIGN(out.around_, make_around(device));
   } else {
@@ -31,6 +34,14 @@ Result<Pyramid> Pyramid::make(const Device& device, const PyramidParams& params,
     DUO_TRY_ASSIGN(Level level, out.make_level(device, shape));
     out.levels_.push_back(std::move(level));
   }
+  return out;
+}
+
+Result<Pyramid::Balanced> Pyramid::make_balanced(const Device& device, Size size) {
+  Balanced out;
+  DUO_TRY_ASSIGN(out.balance, Balance::make(device));
+  DUO_TRY_ASSIGN(out.scratch, Balance::Scratch::make(device, size));
+  DUO_TRY_ASSIGN(out.right, make_image<std::uint8_t>(device, "balanced", size));
   return out;
 }
 
@@ -83,8 +94,16 @@ Pyramid::Input Pyramid::pair_of(const Input& full, std::size_t level) const {
   return {view(at.left), view(at.right), view(at.left_inside), view(at.right_inside)};
 }
 
-void Pyramid::record(Recorder& recorder, const Input& pair, BufferView<std::uint16_t> d_q4) const {
-  DUO_CHECK(masked_ != pair.left_inside.absent());
+void Pyramid::record(Recorder& recorder, const Input& raw, BufferView<std::uint16_t> d_q4) const {
+  DUO_CHECK(masked_ != raw.left_inside.absent());
+  Input pair = raw;
+  if (balanced_) {
+    const auto& [size, max_disparity] = levels_[0].shape;
+    pair.right = whole<std::uint8_t>(balanced_->right, size);
+    balanced_->balance.record(recorder, {raw.left, raw.right, raw.left_inside, raw.right_inside}, max_disparity,
+                              balanced_->scratch, pair.right, size);
+    recorder.stage("balance");
+  }
   record_halving(recorder, pair);
   recorder.stage("halve");
   around_ ? record_around(recorder, pair, d_q4) : record_tiles(recorder, pair, d_q4);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "matchers/pyramid/pyramid.h"
+#include "stages/balance/balance_vk.h"
 #include "stages/check_left_right/check_left_right_vk.h"
 #include "stages/halve/halve_vk.h"
 #include "stages/mark_invalid/mark_invalid_vk.h"
@@ -29,6 +30,12 @@ class Pyramid {
   void record(Recorder& recorder, const Input& pair, BufferView<std::uint16_t> d_q4) const;
 
  private:
+  /// What the balance of brightness needs.
+  struct Balanced {
+    Balance balance;
+    Balance::Scratch scratch;
+    Buffer right;
+  };
   /// What the thesis's search needs.
   struct Around {
     MatchAround match;
@@ -53,6 +60,7 @@ class Pyramid {
     Buffer right_winner = {}, checked = {}, fine = {}, sets = {};
     MatchTiles::Scratch scratch = {};
   };
+  static Result<Balanced> make_balanced(const Device& device, Size size);
   static Result<Around> make_around(const Device& device);
   static Result<Tiles> make_tiles(const Device& device, Size size);
   Result<Level> make_level(const Device& device, const LevelShape& shape) const;
@@ -71,6 +79,7 @@ class Pyramid {
   bool masked_ = false;
   std::vector<Level> levels_;
   Halve halve_;
+  std::optional<Balanced> balanced_;
   std::optional<Around> around_;  // one of the two
   std::optional<Tiles> tiles_;
 };

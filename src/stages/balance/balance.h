@@ -24,7 +24,7 @@ namespace duo {
 /// shifted.
 ///
 /// Shape    pair H x W, dst the same; cells H / 8 x W / 8, whole ones
-/// Units    max_disparity px, 1 .. 256
+/// Units    max_disparity px, from 1 on
 /// Border   two cells along each edge have no census
 /// Threads  rows of cells are independent, then those of the picture
 /// Exact    ref, simd and vk agree bit for bit: integer sums, then one table of 256 values in integers. Deviations in 1/2^24,
@@ -72,6 +72,11 @@ struct BrightnessPair {
   }
   void add(const BrightnessPair& other) { left.add(other.left), right.add(other.right); }
 };
+
+/// The largest disparity that is looked for, in cells.
+inline int balance_reach(int max_disparity) {
+  return std::min((max_disparity + kBalanceCell - 1) / kBalanceCell, kBalanceMost);
+}
 
 /// What each value of the right picture becomes.
 std::array<std::uint8_t, 256> balance_table(const BrightnessPair& sums);

@@ -14,7 +14,7 @@ const int kBalanceAlike = 3;     // bits of a census by which two that see the s
 const int kBalanceDark = 8;      // a mean below has pixels that are cut off, likely
 const int kBalanceBright = 247;  // and one above
 const int kBalanceFewest = 16;   // pairs of cells
-const int kBalanceMost = 256;    // px, disparities
+const int kBalanceMost = 255;    // disparity, in cells: those beyond are not looked for
 
 #ifdef __cplusplus
 namespace vk {

@@ -160,7 +160,7 @@ void make_census(int row, Size size, BalanceScratch::Cells& cells) {
 
 void add_pairs(int row, int max_disparity, BalanceScratch& scratch, BrightnessPair& sums) {
   BalanceScratch::Cells &left = scratch.left, &right = scratch.right;
-  const int w = scratch.cells.width, most = std::min((max_disparity + kBalanceCell - 1) / kBalanceCell, w - 1);
+  const int w = scratch.cells.width, most = std::min(balance_reach(max_disparity), w - 1);
   for (auto* cells : {&left, &right}) std::fill_n(cells->difference.row(row), w, std::uint8_t{255});
   for (int d = 0; d <= most; ++d) {
     const std::uint8_t *l[4] = {}, *r[4] = {};
@@ -182,7 +182,7 @@ void add_pairs(int row, int max_disparity, BalanceScratch& scratch, BrightnessPa
 
 // The order in which parts are added does not change integer sums.
 void balance(Pool& pool, const GrayPair& pair, int max_disparity, BalanceScratch& scratch, View<std::uint8_t> dst) {
-  DUO_CHECK(pair.right.size() == dst.size() && max_disparity >= 1 && max_disparity <= kBalanceMost);
+  DUO_CHECK(pair.right.size() == dst.size() && max_disparity >= 1);
   const Size cells = scratch.cells;
   DUO_CHECK(cells.empty() || cells == (Size{dst.width() / kBalanceCell, dst.height() / kBalanceCell}));
   pool.rows(cells.height, [&](int begin, int end) {

@@ -58,7 +58,7 @@ void Balance::record(Recorder& recorder, const Input& pair, int max_disparity, c
   const bool masked = !pair.left_inside.absent();
   DUO_CHECK(scratch.size_ == size && pair.left.holds(size) && pair.right.holds(size) && dst.holds(size));
   DUO_CHECK(masked ? pair.left_inside.holds(size) && pair.right_inside.holds(size) : pair.right_inside.absent());
-  DUO_CHECK(max_disparity >= 1 && max_disparity <= kBalanceMost);
+  DUO_CHECK(max_disparity >= 1);
   const auto [across, down] = cells_of(size);
   // Of a picture without a cell the table is made from no row.
   if (across > 0 && down > 0) {
@@ -72,7 +72,7 @@ void Balance::record(Recorder& recorder, const Input& pair, int max_disparity, c
         groups_for({across, 2 * down}));
     recorder.dispatch(census_, BalanceCensusPush{across, down}, {reads(scratch.cells_), writes(scratch.census_)},
                       groups_for({across, 2 * down}));
-    recorder.dispatch(sums_, BalanceSumsPush{across, down, (max_disparity + kBalanceCell - 1) / kBalanceCell},
+    recorder.dispatch(sums_, BalanceSumsPush{across, down, balance_reach(max_disparity)},
                       {reads(scratch.cells_), reads(scratch.census_), writes(scratch.rows_)}, {down, 1});
   }
   recorder.dispatch(table_, BalanceTablePush{across > 0 ? down : 0}, {reads(scratch.rows_), writes(scratch.table_)}, {1, 1});

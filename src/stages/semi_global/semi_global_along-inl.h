@@ -73,7 +73,10 @@ struct Sweep {
   void finished(int i, int pixels) const {
     std::atomic<int>& done = part.done[i];
     done.store(pixels, std::memory_order_release);
-    if ((part.threads > 1 && pixels % ahead == 0) || pixels == part.width()) done.notify_all();
+    if ((part.threads == 1 || pixels % ahead != 0) && pixels != part.width()) return;
+    // Else who is about to wait may not see the store yet, and this not see who waits.
+    std::atomic_thread_fence(std::memory_order_seq_cst);
+    done.notify_all();
   }
 
  private:
