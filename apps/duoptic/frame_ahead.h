@@ -21,6 +21,9 @@ struct Matched {
   const Frame* frame = nullptr;
   double engine_ms = 0;  // from when the engine was given the pair to its frame
   std::string event;     // Engine::take_event()
+  // The right picture as the engine had it, put to the left one's moment; while the engine has it, the one that came.
+  bool in_step = false;
+  Image<Rgb8> other_right;
 };
 
 /// Pairs through an engine, one frame ahead and `at_once` in the engine; files are read one pair ahead of that. A live source
@@ -80,8 +83,6 @@ class FrameAhead {
   /// A pair that the engine works on.
   struct InEngine {
     Matched matched;
-    Image<Rgb8> other_right;  // the picture as it came, while the engine has it in step; else memory for the next such one
-    bool in_step = false;
     double since_ms = 0;
   };
 
@@ -119,25 +120,29 @@ class FrameAhead {
 
   void submit(InEngine& of) {
     of.since_ms = clock_ms(CLOCK_MONOTONIC);
-    Image<Rgb8>& right = of.matched.pair.right.pixels;
-    Image<Rgb8>* moved = in_step_.right_of(of.matched.pair);
-    of.in_step = moved != nullptr;
-    if (of.in_step) {  // for the engine only
-      if (of.other_right.size() != right.size()) of.other_right = Image<Rgb8>(right.size());
-      std::swap(of.other_right, *moved);
-      std::swap(right, of.other_right);
+    Matched& matched = of.matched;
+    Image<Rgb8>* moved = in_step_.right_of(matched.pair);
+    matched.in_step = moved != nullptr;
+    if (matched.in_step) {
+      if (matched.other_right.size() != moved->size()) matched.other_right = Image<Rgb8>(moved->size());
+      std::swap(matched.other_right, *moved);
     }
+    to_engine(of);
+  }
+  void to_engine(InEngine& of) {
+    if (of.matched.in_step) std::swap(of.matched.pair.right.pixels, of.matched.other_right);
     engine_.submit(of.matched.pair);
   }
   void collect(InEngine& of) {
     of.matched.frame = &engine_.collect();
     of.matched.engine_ms = clock_ms(CLOCK_MONOTONIC) - of.since_ms;
     of.matched.event = engine_.take_event();
-    if (of.in_step) std::swap(of.matched.pair.right.pixels, of.other_right);
+    if (of.matched.in_step) std::swap(of.matched.pair.right.pixels, of.matched.other_right);
   }
   void make_anew(Matched& of) {
     std::swap(of, ring_[oldest_].matched);
-    submit(ring_[oldest_]);
+    ring_[oldest_].since_ms = clock_ms(CLOCK_MONOTONIC);
+    to_engine(ring_[oldest_]);  // in step as it was: the cameras have moved on since
     collect(ring_[oldest_]);
     std::swap(of, ring_[oldest_].matched);
   }
