@@ -74,7 +74,7 @@ struct BrightnessPair {
 };
 
 /// The largest disparity that is looked for, in cells.
-inline int balance_reach(int max_disparity) {
+inline int most_cells_apart(int max_disparity) {
   return std::min((max_disparity + kBalanceCell - 1) / kBalanceCell, kBalanceMost);
 }
 

@@ -125,7 +125,7 @@ int nearest(const std::vector<Cell>& row, int x, const std::vector<Cell>& other,
 void balance(const GrayPair& pair, int max_disparity, View<std::uint8_t> dst) {
   DUO_CHECK(pair.right.size() == dst.size() && max_disparity >= 1);
   const Cells left = cells_of(pair.left, pair.left_inside), right = cells_of(pair.right, pair.right_inside);
-  const int most = balance_reach(max_disparity);
+  const int most = most_cells_apart(max_disparity);
   BrightnessPair sums;
   for (std::size_t row = 0; row < left.size(); ++row)
     for (int x = 0; x < static_cast<int>(left[row].size()); ++x) {

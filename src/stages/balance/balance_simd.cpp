@@ -160,7 +160,7 @@ void make_census(int row, Size size, BalanceScratch::Cells& cells) {
 
 void add_pairs(int row, int max_disparity, BalanceScratch& scratch, BrightnessPair& sums) {
   BalanceScratch::Cells &left = scratch.left, &right = scratch.right;
-  const int w = scratch.cells.width, most = std::min(balance_reach(max_disparity), w - 1);
+  const int w = scratch.cells.width, most = std::min(most_cells_apart(max_disparity), w - 1);
   for (auto* cells : {&left, &right}) std::fill_n(cells->difference.row(row), w, std::uint8_t{255});
   for (int d = 0; d <= most; ++d) {
     const std::uint8_t *l[4] = {}, *r[4] = {};

@@ -72,7 +72,7 @@ void Balance::record(Recorder& recorder, const Input& pair, int max_disparity, c
         groups_for({across, 2 * down}));
     recorder.dispatch(census_, BalanceCensusPush{across, down}, {reads(scratch.cells_), writes(scratch.census_)},
                       groups_for({across, 2 * down}));
-    recorder.dispatch(sums_, BalanceSumsPush{across, down, balance_reach(max_disparity)},
+    recorder.dispatch(sums_, BalanceSumsPush{across, down, most_cells_apart(max_disparity)},
                       {reads(scratch.cells_), reads(scratch.census_), writes(scratch.rows_)}, {down, 1});
   }
   recorder.dispatch(table_, BalanceTablePush{across > 0 ? down : 0}, {reads(scratch.rows_), writes(scratch.table_)}, {1, 1});
