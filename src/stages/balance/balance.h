@@ -40,7 +40,7 @@ namespace simd {
 void balance(Pool& pool, const GrayPair& pair, int max_disparity, BalanceScratch& scratch, View<std::uint8_t> dst);
 }
 
-/// Both views in cells, and of one row of them how far each one's nearest in the other view differs and how far away it is.
+/// Both views in cells, and how much each one's nearest in the other view differs and how far away it is.
 class BalanceScratch {
  public:
   explicit BalanceScratch(Size picture);

@@ -6,7 +6,6 @@
 #include "stages/balance/balance.h"
 
 namespace duo {
-
 namespace {
 
 /// The whole part of the square root, bit by bit.

@@ -108,6 +108,27 @@ TEST(Balance, SumsAtTheBounds) {
   EXPECT_EQ(balance_table({one, half})[255], 0);
 }
 
+// Random pictures have no cells in common: here all but the borders' see the same, 16 px apart, and the balance does something.
+TEST(Balance, SimdAgreesWhereCellsFindEachOther) {
+  Pool two(2);
+  for (const Size cells : {Size{24, 12}, Size{31, 17}, Size{9, 40}})
+    for (const bool masked : {false, true}) {
+      const auto left = of_cells(cells, [](int y, int x) { return pattern(y, x); });
+      const auto right = of_cells(cells, [](int y, int x) { return (3 * pattern(y, x + 2) + 1) / 4 + 9; });
+      const auto inside = of_cells(cells, [](int y, int x) { return y == 1 && x == 1 ? 0 : 255; });
+      GrayPair pair{left, right};
+      if (masked) pair.left_inside = pair.right_inside = inside;
+      BalanceScratch scratch(left.size());
+      Image<std::uint8_t> got(left.size());
+      const auto want = balanced(pair, 40);
+      ASSERT_NE(want.at(24, 24), right.at(24, 24));
+      test::each_target([&](const std::string& target) {
+        simd::balance(two, pair, 40, scratch, got);
+        test::expect_same<std::uint8_t>(want, got, "balance of cells " + target);
+      });
+    }
+}
+
 TEST(Balance, SimdAgrees) {
   std::mt19937 rng(5);
   Pool two(2);
