@@ -12,10 +12,6 @@
 
 namespace duo {
 
-/// Asks the system to back memory that was not written yet by large pages; does nothing below a few of them, or where it
-/// cannot.
-void prefer_large_pages(void* memory, std::size_t bytes);
-
 struct Size {
   int width = 0;
   int height = 0;
@@ -38,7 +34,8 @@ class View {
   View(T* data, Size size, std::ptrdiff_t stride) : data_(data), size_(size), stride_(stride) {}
   /// A view of mutable pixels is also a view of const ones.
   template <class U>
-  requires(std::is_same_v<T, const U>) View(const View<U>& other)  // NOLINT: implicit like T* -> const T*
+    requires(std::is_same_v<T, const U>)
+  View(const View<U>& other)  // NOLINT: implicit like T* -> const T*
       : data_(other.data()), size_(other.size()), stride_(other.stride()) {}
 
   T* data() const { return data_; }
@@ -83,7 +80,6 @@ class Image {
     stride_ = static_cast<std::ptrdiff_t>((static_cast<std::size_t>(size.width) + kBlock - 1) / kBlock * kBlock);
     const std::size_t bytes = static_cast<std::size_t>(stride_) * size.height * sizeof(T) + kAlign;
     void* p = ::operator new[](bytes, std::align_val_t{kAlign});
-    prefer_large_pages(p, bytes);
     std::memset(p, 0, bytes);
     data_.reset(static_cast<T*>(p));
   }
@@ -112,8 +108,8 @@ class Image {
 
   View<T> view() { return {data_.get(), size_, stride_}; }
   View<const T> view() const { return {data_.get(), size_, stride_}; }
-  operator View<T>() { return view(); }                             // NOLINT: an image is used where a view is asked for
-  operator View<const T>() const { return view(); }                 // NOLINT
+  operator View<T>() { return view(); }              // NOLINT: an image is used where a view is asked for
+  operator View<const T>() const { return view(); }  // NOLINT
   operator View<const T>() { return std::as_const(*this).view(); }  // NOLINT
 
   void swap(Image& other) noexcept {
