@@ -18,8 +18,8 @@ bench: build
 # Ten minutes of live tracking: memory, latency, drops. Leave the machine alone meanwhile.
 soak: setup-test
 	@cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=ON >/dev/null
-	@cmake --build build/release --target soak_test
-	@DUOPTIC_SOAK_S=600 build/release/tests/cli/soak_test
+	@cmake --build build/release --target tool_test
+	@DUOPTIC_SOAK_S=600 build/release/tests/cli/tool_test --gtest_filter=Soak.*
 
 format:
 	@tools/setup format

@@ -1,6 +1,6 @@
 # duoptic_stage(NAME [VULKAN [SHADERS more...]]): adds src/stages/NAME to the library and its test; with VULKAN also NAME.comp and
 # the shaders named, NAME_vk.cpp, and NAME_vk_test.cpp to the one program that holds all kernels against their references.
-# duoptic_test(NAME SOURCES... [SLOW]): one GoogleTest program with tests/main.cpp, one ctest entry.
+# duoptic_test(GROUP/NAME SOURCES... [SLOW]): one ctest entry, which runs the tests of these files; the files of a group are one program.
 
 # Warnings are errors in our own code; -ffp-contract=off because a fused multiply-add would round differently from engine to engine.
 add_library(duoptic_flags INTERFACE)
@@ -35,7 +35,7 @@ endfunction()
 
 if(DUO_TESTS)
   # The headers that every test reads, compiled once.
-  add_library(duoptic_test_main OBJECT ${PROJECT_SOURCE_DIR}/tests/main.cpp)
+  add_library(duoptic_test_main OBJECT ${PROJECT_SOURCE_DIR}/tests/main.cpp ${PROJECT_SOURCE_DIR}/tests/allocations.cpp)
   target_link_libraries(duoptic_test_main PUBLIC duoptic duoptic_flags GTest::gtest)
   target_include_directories(duoptic_test_main PUBLIC ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
   # Tests run once, and most of their compile time is the optimiser's; what they test is in the library.
@@ -43,17 +43,25 @@ if(DUO_TESTS)
   target_precompile_headers(duoptic_test_main PRIVATE ${PROJECT_SOURCE_DIR}/tests/agree.h)
 endif()
 
+# In a unity build a dozen test files compile as one: what they include is most of their compile time.
+function(duoptic_test_program target)
+  if(NOT TARGET ${target})
+    add_executable(${target})
+    target_link_libraries(${target} PRIVATE duoptic_test_main)
+    target_precompile_headers(${target} REUSE_FROM duoptic_test_main)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 12)
+  endif()
+endfunction()
+
 function(duoptic_test name)
   cmake_parse_arguments(ARG "SLOW" "" "" ${ARGN})
   if(NOT DUO_TESTS OR (ARG_SLOW AND NOT DUO_SLOW_TESTS))
     return()
   endif()
-  string(REPLACE "/" "_" target ${name}_test)
-  add_executable(${target} ${ARG_UNPARSED_ARGUMENTS})
-  target_link_libraries(${target} PRIVATE duoptic_test_main)
-  target_precompile_headers(${target} REUSE_FROM duoptic_test_main)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
-  add_test(NAME ${name} COMMAND ${target} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})  # ../shared/data is the default data
+  string(REGEX REPLACE "/.*" "_test" target ${name})
+  duoptic_test_program(${target})
+  target_sources(${target} PRIVATE ${ARG_UNPARSED_ARGUMENTS})
+  add_test(NAME ${name} COMMAND ${target} ${ARG_UNPARSED_ARGUMENTS} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})  # ../shared/data is the default data
   set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600)
   if(ARG_SLOW)
     set_tests_properties(${name} PROPERTIES COST 10)  # begins early, so that the last test to run is a short one
@@ -67,25 +75,22 @@ function(duoptic_vulkan_test name)
   if(NOT DUO_TESTS OR NOT DUO_VULKAN OR (ARG_SLOW AND NOT DUO_SLOW_TESTS))
     return()
   endif()
-  duoptic_test(${name} ${ARG_UNPARSED_ARGUMENTS})
   string(REPLACE "/" "_" target ${name}_test)
+  duoptic_test_program(${target})
+  target_sources(${target} PRIVATE ${ARG_UNPARSED_ARGUMENTS})
   target_link_libraries(${target} PRIVATE Vulkan::Headers)
-  set_tests_properties(${name} PROPERTIES ENVIRONMENT LP_NATIVE_VECTOR_WIDTH=256)
-  if(NOT DUO_SLOW_TESTS)
-    return()
+  set(variants :LP_NATIVE_VECTOR_WIDTH=256)
+  if(DUO_SLOW_TESTS AND ARG_EVERY_SIZE)
+    list(APPEND variants _128:LP_NATIVE_VECTOR_WIDTH=128 _512:LP_NATIVE_VECTOR_WIDTH=512)
   endif()
-  set(variants)
-  if(ARG_EVERY_SIZE)
-    list(APPEND variants 128:LP_NATIVE_VECTOR_WIDTH=128 512:LP_NATIVE_VECTOR_WIDTH=512)
-  endif()
-  if(ARG_ASSISTED)
-    list(APPEND variants assisted:DUOPTIC_GPU_ASSISTED=1)
+  if(DUO_SLOW_TESTS AND ARG_ASSISTED)
+    list(APPEND variants _assisted:DUOPTIC_GPU_ASSISTED=1)
   endif()
   foreach(variant ${variants})
-    string(REGEX MATCH "^[^:]+" suffix ${variant})
-    string(REGEX REPLACE "^[^:]+:" "" environment ${variant})
-    add_test(NAME ${name}_${suffix} COMMAND ${target})
-    set_tests_properties(${name}_${suffix} PROPERTIES ENVIRONMENT ${environment} SKIP_RETURN_CODE 77 TIMEOUT 600)
+    string(REGEX REPLACE ":.*" "" suffix ${variant})
+    string(REGEX REPLACE "^[^:]*:" "" environment ${variant})
+    add_test(NAME ${name}${suffix} COMMAND ${target} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+    set_tests_properties(${name}${suffix} PROPERTIES ENVIRONMENT ${environment} SKIP_RETURN_CODE 77 TIMEOUT 600)
   endforeach()
 endfunction()
 

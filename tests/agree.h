@@ -14,9 +14,12 @@
 #include <vector>
 
 #include "core/pool.h"
+#include "duoptic/frame.h"
 #include "duoptic/image.h"
 
 namespace duo::test {
+
+inline constexpr int kNone = Disparity::kNone;
 
 template <class T>
 Image<T> image(std::initializer_list<std::initializer_list<int>> rows) {
@@ -48,18 +51,29 @@ void fill(View<T> out, Fill how, std::mt19937& rng) {
     for (int x = 0; x < out.width(); ++x) {
       const int r = static_cast<int>(rng());
       switch (how) {
-        case Fill::kRandom: out.at(y, x) = static_cast<T>(r); break;
-        case Fill::kLow: out.at(y, x) = static_cast<T>(r & 1); break;
-        case Fill::kHigh: out.at(y, x) = static_cast<T>(kMax - (r & 1)); break;
-        case Fill::kCheckerboard: out.at(y, x) = static_cast<T>((x + y) % 2 ? kMax : 0); break;
-        case Fill::kConstant: out.at(y, x) = static_cast<T>(kMax / 3); break;
+        case Fill::kRandom:
+          out.at(y, x) = static_cast<T>(r);
+          break;
+        case Fill::kLow:
+          out.at(y, x) = static_cast<T>(r & 1);
+          break;
+        case Fill::kHigh:
+          out.at(y, x) = static_cast<T>(kMax - (r & 1));
+          break;
+        case Fill::kCheckerboard:
+          out.at(y, x) = static_cast<T>((x + y) % 2 ? kMax : 0);
+          break;
+        case Fill::kConstant:
+          out.at(y, x) = static_cast<T>(kMax / 3);
+          break;
       }
     }
 }
 
 /// Sizes that break vector code: one pixel, narrower than a window, vector widths -1, +0, +1, and an ordinary one.
 inline std::vector<Size> awkward_sizes() {
-  return {{1, 1}, {2, 3}, {3, 2}, {5, 9}, {15, 4}, {16, 7}, {17, 5}, {31, 8}, {33, 6}, {63, 9}, {64, 3}, {65, 11}, {67, 1}, {129, 10}, {131, 37}};
+  return {{1, 1},  {2, 3},  {3, 2},  {5, 9},   {15, 4}, {16, 7},   {17, 5},  {31, 8},
+          {33, 6}, {63, 9}, {64, 3}, {65, 11}, {67, 1}, {129, 10}, {131, 37}};
 }
 
 /// Pixels with an odd stride and no padding: the least a View promises.

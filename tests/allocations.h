@@ -1,42 +1,8 @@
-// Counts heap allocations of the whole program, and their bytes; include in exactly one source file of a test program.
+// Heap allocations of the whole test program, counted by its operator new (allocations.cpp).
 #pragma once
 
 #include <atomic>
-#include <cstdlib>
-#include <new>
 
 namespace duo::test {
-inline std::atomic<long> allocations{0}, allocated_bytes{0};  // what was freed is not taken off
-
-inline void* counted(std::size_t bytes, std::size_t align) {
-  allocations.fetch_add(1, std::memory_order_relaxed);
-  allocated_bytes.fetch_add(static_cast<long>(bytes), std::memory_order_relaxed);
-  void* p =
-      align > alignof(std::max_align_t) ? std::aligned_alloc(align, (bytes + align - 1) / align * align) : std::malloc(bytes);
-  if (p == nullptr) throw std::bad_alloc();
-  return p;
+extern std::atomic<long> allocations, allocated_bytes;  // what was freed is not taken off
 }
-}  // namespace duo::test
-
-// Not inlined: the compiler would see free() on what an operator new returned, and warn.
-[[gnu::noinline]] void* operator new(std::size_t bytes) { return duo::test::counted(bytes, 0); }
-[[gnu::noinline]] void* operator new[](std::size_t bytes) { return duo::test::counted(bytes, 0); }
-[[gnu::noinline]] void* operator new(std::size_t bytes, std::align_val_t align) {
-  return duo::test::counted(bytes, static_cast<std::size_t>(align));
-}
-[[gnu::noinline]] void* operator new[](std::size_t bytes, std::align_val_t align) {
-  return duo::test::counted(bytes, static_cast<std::size_t>(align));
-}
-// std::stable_sort asks this way.
-[[gnu::noinline]] void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
-  duo::test::allocations.fetch_add(1, std::memory_order_relaxed);
-  return std::malloc(bytes);
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete[](void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete[](void* p, std::align_val_t) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }

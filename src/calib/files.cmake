@@ -20,5 +20,5 @@ duoptic_test(calib/rig_health ${dir}/rig_health_test.cpp)
 duoptic_test(calib/row_offsets ${dir}/row_offsets_test.cpp)
 duoptic_test(calib/scene_clips ${dir}/scene_clips_test.cpp SLOW)
 if(DUO_TESTS)
-  target_link_libraries(calib_rig_files_test PRIVATE opencv::core)  # reads what we write for it
+  target_link_libraries(calib_test PRIVATE opencv::core)  # reads what we write for it
 endif()

@@ -10,6 +10,7 @@
 #include "calib/opencv_rectified.h"
 #include "core/lens.h"
 #include "duoptic/synthetic.h"
+#include "tests/replaced.h"
 #include "tests/write_media.h"
 
 namespace duo {
@@ -17,6 +18,7 @@ namespace {
 
 using test::bytes_of;
 using test::put;
+using test::replaced;
 using test::TempFolder;
 
 Rig plain_rig() {
@@ -212,12 +214,6 @@ TEST(RigFiles, ReadsRosFilesAndMessages) {
     EXPECT_NEAR(rig->right_from_left.t_m.x, -0.12, 1e-12);
     EXPECT_EQ(rig->left_name, "narrow_stereo/left");
   }
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == text.npos ? text : text.replace(at, from.size(), to);
 }
 
 // The rotation is the right camera's rectification, undone, after the left one's: R2^T R1.

@@ -6,10 +6,13 @@
 #include <filesystem>
 #include <limits>
 
+#include "tests/replaced.h"
+
 namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
+using test::replaced;
 
 // Cameras 12 cm apart; the right one is turned by 0.01 rad around y.
 Rig good_rig() {
@@ -42,12 +45,6 @@ void expect_text_refused(std::string_view text, const std::string& part) {
   EXPECT_NE(result.error().what.find("my_rig.yml"), std::string::npos) << result.error().what;
   EXPECT_NE(result.error().what.find(part), std::string::npos) << result.error().what;
   EXPECT_EQ(result.error().what.find('\n'), std::string::npos) << result.error().what;
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == text.npos ? text : text.replace(at, from.size(), to);
 }
 
 std::string matrix_yaml(const std::string& key, int rows, int cols, const std::string& data) {

@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-class Clips : public testing::TestWithParam<const char*> {
+class SceneClips : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
     folder_ = data_folder() / "sequences" / GetParam();
@@ -26,7 +26,7 @@ class Clips : public testing::TestWithParam<const char*> {
   std::filesystem::path folder_;
 };
 
-TEST_P(Clips, FromSceneRefineAndCheck) {
+TEST_P(SceneClips, FromSceneRefineAndCheck) {
   const auto truth = load_rig(folder_ / "calibration_truth.yml");
   ASSERT_TRUE(truth);
   const auto found = rig_from_scene(*truth, truth->baseline_m(), *pairs(), 2);
@@ -53,7 +53,7 @@ TEST_P(Clips, FromSceneRefineAndCheck) {
   EXPECT_TRUE(pan_px < 2 || refined->after.verdict != RigVerdict::kGood) << pan_px;
 }
 
-INSTANTIATE_TEST_SUITE_P(Rendered, Clips, testing::Values("dev_easy_wave", "dev_hard_beige"));
+INSTANTIATE_TEST_SUITE_P(Rendered, SceneClips, testing::Values("dev_easy_wave", "dev_hard_beige"));
 
 }  // namespace
 }  // namespace duo

@@ -16,7 +16,7 @@ namespace {
 
 using test::bytes_of;
 
-TrackHeader header_of(Size size) {
+TrackHeader clip_header(Size size) {
   TrackHeader r;
   r.sources = {"left.avi", "odd \"name\"\xFF.avi"};
   r.engine = "simd";
@@ -30,8 +30,8 @@ TrackHeader header_of(Size size) {
 }
 
 /// A frame with everything the sinks look at: a wall at 2 m, gray, and an arm.
-struct Instant {
-  explicit Instant(Size size) {
+struct Moment {
+  explicit Moment(Size size) {
     left.pixels = Image<Rgb8>(size);
     frame.color = Image<Rgb8>(size);
     frame.disparity.d_q4 = Image<std::uint16_t>(size);
@@ -68,11 +68,11 @@ constexpr char kJoints[] =
 
 TEST(JsonLines, BytesByHand) {
   const test::TempFolder folder;
-  const Instant instant({64, 48});
-  auto sink = make_json_lines(folder / "arm.jsonl", header_of({64, 48}));
+  const Moment moment({64, 48});
+  auto sink = make_json_lines(folder / "arm.jsonl", clip_header({64, 48}));
   ASSERT_TRUE(sink) << sink.error().what;
-  ASSERT_TRUE((*sink)->write(instant.tracked(57)));
-  TrackedFrame timed = instant.tracked(58);
+  ASSERT_TRUE((*sink)->write(moment.tracked(57)));
+  TrackedFrame timed = moment.tracked(58);
   timed.times = TrackTimes{12.3456, 1};
   ASSERT_TRUE((*sink)->write(timed));
   EXPECT_FALSE(std::filesystem::exists(folder / "arm.jsonl"));  // not before its end
@@ -86,13 +86,13 @@ TEST(JsonLines, BytesByHand) {
 
 TEST(JsonLines, SecondArmAndNoArm) {
   const test::TempFolder folder;
-  Instant instant({64, 48});
-  auto sink = make_json_lines(folder / "arm.jsonl", header_of({64, 48}));
+  Moment moment({64, 48});
+  auto sink = make_json_lines(folder / "arm.jsonl", clip_header({64, 48}));
   ASSERT_TRUE(sink);
-  instant.arms.push_back(instant.arms[0]);
-  ASSERT_TRUE((*sink)->write(instant.tracked(0)));
-  instant.arms.clear();
-  ASSERT_TRUE((*sink)->write(instant.tracked(1)));
+  moment.arms.push_back(moment.arms[0]);
+  ASSERT_TRUE((*sink)->write(moment.tracked(0)));
+  moment.arms.clear();
+  ASSERT_TRUE((*sink)->write(moment.tracked(1)));
   ASSERT_TRUE((*sink)->finish());
   const std::string joints = kJoints;
   EXPECT_EQ(bytes_of(folder / "arm.jsonl"),
@@ -102,14 +102,14 @@ TEST(JsonLines, SecondArmAndNoArm) {
 
 TEST(JsonLines, AbandonedLeavesNothing) {
   const test::TempFolder folder;
-  const Instant instant({64, 48});
+  const Moment moment({64, 48});
   {
-    auto sink = make_json_lines(folder / "arm.jsonl", header_of({64, 48}));
+    auto sink = make_json_lines(folder / "arm.jsonl", clip_header({64, 48}));
     ASSERT_TRUE(sink);
-    ASSERT_TRUE((*sink)->write(instant.tracked(0)));
+    ASSERT_TRUE((*sink)->write(moment.tracked(0)));
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
-  const auto nowhere = make_json_lines(folder / "none" / "arm.jsonl", header_of({64, 48}));
+  const auto nowhere = make_json_lines(folder / "none" / "arm.jsonl", clip_header({64, 48}));
   ASSERT_FALSE(nowhere);
   EXPECT_NE(nowhere.error().what.find("make the folder first"), std::string::npos) << nowhere.error().what;
 }
@@ -179,11 +179,11 @@ TEST(VideoWriter, FailuresLeaveNothing) {
 
 TEST(Panels, JointsAndBonesWhereTheyAre) {
   constexpr Size kSize = {320, 240};
-  Instant instant(kSize);
-  const TrackHeader header = header_of(kSize);
-  instant.arms[0][Joint::kHand] = {{0, 0, 2}, 0.01, 1, 80, 120, JointState::kSeen};
-  instant.arms[0][Joint::kElbow] = {{0.2, 0, 2}, 0.01, 1, 240, 120, JointState::kSeen};
-  const auto draw = [&] { return draw_panels(instant.tracked(3), header, {10, 60}); };
+  Moment moment(kSize);
+  const TrackHeader header = clip_header(kSize);
+  moment.arms[0][Joint::kHand] = {{0, 0, 2}, 0.01, 1, 80, 120, JointState::kSeen};
+  moment.arms[0][Joint::kElbow] = {{0.2, 0, 2}, 0.01, 1, 240, 120, JointState::kSeen};
+  const auto draw = [&] { return draw_panels(moment.tracked(3), header, {10, 60}); };
   const Image<Rgb8> seen = draw();
   EXPECT_EQ(seen.size(), panels_size(header));
   EXPECT_EQ(seen.width() % 2 + seen.height() % 2, 0);
@@ -200,23 +200,23 @@ TEST(Panels, JointsAndBonesWhereTheyAre) {
   EXPECT_GT(joint.g, 180);
   EXPECT_LT(joint.r, 100);
 
-  instant.arms[0][Joint::kElbow].state = JointState::kInferred;
+  moment.arms[0][Joint::kElbow].state = JointState::kInferred;
   const int broken = count(draw(), red);
   EXPECT_GT(broken, 40);
   EXPECT_LT(broken, 80);
-  instant.arms[0][Joint::kElbow].state = JointState::kLost;
+  moment.arms[0][Joint::kElbow].state = JointState::kLost;
   EXPECT_EQ(count(draw(), red), 0);
 }
 
 TEST(Panels, RegionInTheShadeOfTheNearestJoint) {
   constexpr Size kSize = {320, 240};
-  Instant instant(kSize);
-  const TrackHeader header = header_of(kSize);
+  Moment moment(kSize);
+  const TrackHeader header = clip_header(kSize);
   // The wall at 2 m: x_m = (x - 160) / 250. Hand at the centre, elbow 0.3 m to its right, shoulder lost.
-  instant.arms[0][Joint::kHand] = {{0, 0, 2}, 0.01, 1, 0, 0, JointState::kSeen};
-  instant.arms[0][Joint::kElbow] = {{0.3, 0, 2}, 0.01, 1, 0, 0, JointState::kSeen};
+  moment.arms[0][Joint::kHand] = {{0, 0, 2}, 0.01, 1, 0, 0, JointState::kSeen};
+  moment.arms[0][Joint::kElbow] = {{0.3, 0, 2}, 0.01, 1, 0, 0, JointState::kSeen};
   Image<Rgb8> drawn(kSize);
-  draw_arm_region(instant.frame, header.rectified, instant.arms, drawn);
+  draw_arm_region(moment.frame, header.rectified, moment.arms, drawn);
   const Rgb8 hand = drawn.at(120, 165), elbow = drawn.at(120, 230), wall = drawn.at(30, 165);
   EXPECT_EQ(drawn.at(120, 190), hand);   // 0.12 m along
   EXPECT_EQ(drawn.at(120, 205), elbow);  // 0.18 m
@@ -244,11 +244,11 @@ TEST(Panels, HueByHand) {
 TEST(Panels, WhateverTheSizes) {
   for (const Size raw : {Size{1, 1}, Size{3, 5}, Size{161, 90}, Size{1280, 720}, Size{720, 1280}})
     for (const Size map : {Size{1, 1}, Size{40, 90}, Size{700, 500}}) {
-      Instant instant(map);
-      TrackHeader header = header_of(map);
+      Moment moment(map);
+      TrackHeader header = clip_header(map);
       header.size = raw;
-      instant.left.pixels = Image<Rgb8>(raw);
-      EXPECT_EQ(draw_panels(instant.tracked(0), header, {}).size(), panels_size(header));
+      moment.left.pixels = Image<Rgb8>(raw);
+      EXPECT_EQ(draw_panels(moment.tracked(0), header, {}).size(), panels_size(header));
       EXPECT_EQ(panels_size(header).width % 2, 0);
       EXPECT_EQ(panels_size(header).height % 2, 0);
     }

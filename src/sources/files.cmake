@@ -21,9 +21,6 @@ foreach(file camera clock_model decode device look modes system_calls)
   target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/camera/${file}.cpp)
 endforeach()
 target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/live/live_pairs.cpp ${PROJECT_SOURCE_DIR}/src/sources/live/pairing.cpp)
-duoptic_test(sources/live ${PROJECT_SOURCE_DIR}/src/sources/live/live_test.cpp)
-if(DUO_TESTS)
-  target_sources(sources_live_test PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/camera/camera_test.cpp
-    ${PROJECT_SOURCE_DIR}/src/sources/stream_test.cpp)
-endif()
+duoptic_test(sources/live ${PROJECT_SOURCE_DIR}/src/sources/live/live_test.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/camera/camera_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/stream_test.cpp)
 include(${CMAKE_CURRENT_LIST_DIR}/synthetic/files.cmake)

@@ -11,7 +11,7 @@
 namespace duo {
 namespace {
 
-constexpr Size kSize{320, 240};  // cells of one pixel
+constexpr Size kPictureSize{320, 240};  // cells of one pixel
 constexpr int kSide = 48;        // of the square
 constexpr TimeNs kFrame_ns = 33'000'000;
 constexpr int kSame = 24;  // levels: a place between pixels is a mean of them
@@ -24,9 +24,9 @@ std::uint8_t hashed(int x, int y, unsigned seed) {
 
 /// Patches of 3 x 3 pixels, a square of others at (left, top).
 Image<Rgb8> scene(int left, int top) {
-  Image<Rgb8> out(kSize);
-  for (int y = 0; y < kSize.height; ++y)
-    for (int x = 0; x < kSize.width; ++x) {
+  Image<Rgb8> out(kPictureSize);
+  for (int y = 0; y < kPictureSize.height; ++y)
+    for (int x = 0; x < kPictureSize.width; ++x) {
       const bool in = x >= left && y >= top && x < left + kSide && y < top + kSide;
       const std::uint8_t g = in ? hashed((x - left) / 3, (y - top) / 3, 1) : hashed(x / 3, y / 3, 2);
       out.at(y, x) = {g, g, static_cast<std::uint8_t>(in ? 200 : 90)};
@@ -96,7 +96,7 @@ TEST(InStep, StillThingsKeepTheirBits) {
 
 TEST(InStep, NothingToDoOrNothingToDoItWith) {
   InStep common;
-  const auto moved = [&](TimeNs t_ns, TimeNs skew_ns, Size size = kSize) {
+  const auto moved = [&](TimeNs t_ns, TimeNs skew_ns, Size size = kPictureSize) {
     return common.right_of(pair_of(Image<Rgb8>(size), t_ns, skew_ns)) != nullptr;
   };
   EXPECT_FALSE(moved(0, 5'000'000));

@@ -22,9 +22,8 @@ target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/stages/sift/sift.cpp ${
 if(DUO_TESTS AND DUO_SLOW_TESTS)
   foreach(test oracle middlebury)
     duoptic_test(stages/sift_${test} ${PROJECT_SOURCE_DIR}/src/stages/sift/sift_${test}_test.cpp SLOW)
-    target_link_libraries(stages_sift_${test}_test PRIVATE opencv::core opencv::imgproc opencv::imgcodecs opencv::features2d
-      nlohmann_json::nlohmann_json)
   endforeach()
+  target_link_libraries(stages_test PRIVATE opencv::core opencv::imgproc opencv::imgcodecs opencv::features2d nlohmann_json::nlohmann_json)
 endif()
 duoptic_stage(mark_targets VULKAN)
 duoptic_stage(region VULKAN)

@@ -15,8 +15,10 @@ namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kUsage = 2, kInput = 4, kOutput = 5;
 using test::Ended;
+using test::kInput;
+using test::kOutput;
+using test::kUsage;
 
 /// Mean over `width` pixels of a row: a board that moved while the shutter was open.
 Image<Rgb8> smeared(View<const Rgb8> in, int width) {

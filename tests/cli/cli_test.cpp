@@ -20,7 +20,10 @@ using test::bytes_of;
 using test::Ended;
 using test::put;
 
-constexpr int kUsage = 2, kCut = 3, kInput = 4, kOutput = 5;
+using test::kCut;
+using test::kInput;
+using test::kOutput;
+using test::kUsage;
 
 /// A small synthetic pair with its rig, and the tool run beside it.
 class Cli : public ::testing::Test {

@@ -10,7 +10,7 @@
 namespace duo {
 namespace {
 
-constexpr int kInput = 4;
+using test::kInput;
 constexpr char kDevice[] = " --engine vulkan:llvmpipe";
 
 class Devices : public ::testing::Test {

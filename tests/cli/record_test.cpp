@@ -19,13 +19,17 @@ using test::bytes_of;
 using test::Ended;
 using test::put;
 
-constexpr int kUsage = 2, kCut = 3, kInput = 4, kOutput = 5;
-constexpr int kPairs = 4;
-constexpr char kSelect[] = " --matcher pyramid --select hand=160,100 --select elbow=160,77 --select shoulder=160,54 ";
+using test::kCut;
+using test::kInput;
+using test::kOutput;
+using test::kUsage;
 
 /// The synthetic room as two AVIs of JPEGs and as two MP4s, each also as a recording.
 class Record : public ::testing::Test {
  protected:
+  static constexpr int kPairs = 4;
+  static constexpr char kSelect[] = " --matcher pyramid --select hand=160,100 --select elbow=160,77 --select shoulder=160,54 ";
+
   static void SetUpTestSuite() {
     folder_ = std::make_unique<test::TempFolder>();
     const SyntheticSetup setup{.size = {320, 240}};

@@ -14,8 +14,10 @@ namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kUsage = 2, kInput = 4, kOutput = 5;
 using test::Ended;
+using test::kInput;
+using test::kOutput;
+using test::kUsage;
 
 /// Pictures of the room with its rig, and the rig of before the right camera rolled by a degree. Rendered once for all tests.
 class RigTool : public testing::Test {

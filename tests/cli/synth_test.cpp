@@ -10,8 +10,9 @@ namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kUsage = 2, kOutput = 5;
 using test::Ended;
+using test::kOutput;
+using test::kUsage;
 
 Ended run(const test::TempFolder& folder, const std::string& arguments) {
   return test::run_tool(folder / "", "synth " + arguments);

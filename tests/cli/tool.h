@@ -12,6 +12,8 @@
 
 namespace duo::test {
 
+inline constexpr int kUsage = 2, kCut = 3, kInput = 4, kOutput = 5;  // what duoptic exits with (docs of each command)
+
 struct Ended {
   int exit = -1;  // 128 + the signal that ended it
   std::string out, err;

@@ -19,14 +19,18 @@ using test::bytes_of;
 using test::Ended;
 using test::put;
 
-constexpr int kUsage = 2, kCut = 3, kInput = 4, kOutput = 5;
-constexpr int kPairs = 6;
-constexpr char kSelect[] = " --select hand=160,100 --select elbow=160,77 --select shoulder=160,54 ";
+using test::kCut;
+using test::kInput;
+using test::kOutput;
+using test::kUsage;
 
 /// A short clip of the synthetic room: a wall to see, on which three clicks lie as far apart as an arm's. Rendered once for all
 /// tests.
 class Track : public ::testing::Test {
  protected:
+  static constexpr int kPairs = 6;
+  static constexpr char kSelect[] = " --select hand=160,100 --select elbow=160,77 --select shoulder=160,54 ";
+
   static void SetUpTestSuite() {
     folder_ = std::make_unique<test::TempFolder>();
     const SyntheticSetup setup{.size = {320, 240}};

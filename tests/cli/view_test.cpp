@@ -27,8 +27,8 @@ using test::bytes_of;
 using test::Ended;
 using test::put;
 
-constexpr int kInput = 4, kOutput = 5;
-constexpr int kPairs = 6;
+using test::kInput;
+using test::kOutput;
 constexpr Size kSize = {320, 240}, kPersonSize = {240, 180};  // of the room, and of the person, who is rendered on the way
 // Twice three places on the wall of the synthetic room as far apart as an arm's, raw left pixels.
 constexpr double kClicks_px[6][2] = {{160, 100}, {160, 77}, {160, 54}, {190, 100}, {190, 77}, {190, 54}};
@@ -76,6 +76,8 @@ std::size_t hues_in(View<const Rgb8> part) {
 /// A short clip of the synthetic room, and a display to look at it on. Made once for all tests.
 class ViewWindow : public ::testing::Test {
  protected:
+  static constexpr int kPairs = 6;
+
   static void SetUpTestSuite() {
     folder_ = std::make_unique<test::TempFolder>();
     const SyntheticSetup setup{.size = kSize};

@@ -10,9 +10,9 @@ namespace duo {
 namespace {
 
 /// A textured wall at 4 px with a box at 12 px in front of its middle third; the right camera is darker and has less contrast.
-struct Scene {
+struct BoxScene {
   Image<std::uint8_t> left, right;
-  explicit Scene(Size size) : left(size), right(size) {
+  explicit BoxScene(Size size) : left(size), right(size) {
     std::mt19937 rng(21);
     Image<std::uint8_t> texture({size.width + 64, size.height});
     test::fill(texture.view(), test::Fill::kRandom, rng);
@@ -26,7 +26,7 @@ struct Scene {
 };
 
 void expect_engines_agree(Size size, int max_disparity, int paths, bool masked) {
-  const Scene scene(size);
+  const BoxScene scene(size);
   const SgmParams params = *sgm_params("default", {{"paths", paths}});
   Image<std::uint8_t> inside = test::constant<std::uint8_t>(size, 255);
   for (int y = 0; y < size.height; ++y) inside.at(y, 0) = 0;
@@ -83,7 +83,7 @@ TEST(Sgm, EnginesAgree) {
 
 TEST(Sgm, FindsWallAndBoxInADarkerPicture) {
   const Size size{150, 60};
-  const Scene scene(size);
+  const BoxScene scene(size);
   Image<std::uint16_t> d_q4(size);
   StageTimer timer;
   Pool pool(1);

@@ -5,7 +5,7 @@
 namespace duo {
 namespace {
 
-constexpr int kNone = Disparity::kNone;
+using test::kNone;
 
 // By hand, tolerance 1: x = 3 with d = 2 looks at right x = 1, which says 3: kept. x = 4 with d = 1 looks at x = 3, which says
 // 4: gone; with reach 1 it also sees x = 2, which says 2: kept. x = 5 has no winner.

@@ -5,7 +5,7 @@
 namespace duo {
 namespace {
 
-constexpr int kNone = Disparity::kNone;
+using test::kNone;
 
 Image<std::uint8_t> origin_of(View<const std::uint16_t> d) {
   Image<std::uint8_t> origin(d.size());

@@ -5,7 +5,7 @@
 namespace duo {
 namespace {
 
-constexpr int kNone = Disparity::kNone;
+using test::kNone;
 
 // By hand, N = 4: -1 negative; 2 at x = 1 leaves the right picture; 4 is out of range; 3 at x = 4 lands on x = 1.
 TEST(MarkInvalid, HandWorked) {

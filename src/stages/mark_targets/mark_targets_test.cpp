@@ -8,7 +8,7 @@
 namespace duo {
 namespace {
 
-constexpr int kNone = Disparity::kNone;
+using test::kNone;
 
 struct Scene {
   Image<std::uint8_t> hue, saturation, value;

@@ -10,15 +10,15 @@ namespace {
 using test::must;
 using test::OnDevice;
 
-struct Case {
+struct MatchAroundCase {
   Size size;
   test::Fill how;
   bool masked;
   int radius;  // 0: whole row
 };
 
-std::vector<Case> cases() {
-  std::vector<Case> out;
+std::vector<MatchAroundCase> cases() {
+  std::vector<MatchAroundCase> out;
   // Radius 2 is tried by one invocation a block, a row of 95 in two rounds by sixteen.
   for (const Size size :
        {Size{1, 1}, Size{2, 3}, Size{5, 9}, Size{16, 8}, Size{17, 9}, Size{33, 17}, Size{67, 37}, Size{95, 5}})
@@ -49,7 +49,7 @@ Image<std::uint8_t> random_inside(Size size, std::mt19937& rng) {
   return out;
 }
 
-void expect_agrees(vk::Device& device, const vk::MatchAround& match, vk::Recorder& recorder, const Case& c,
+void expect_agrees(vk::Device& device, const vk::MatchAround& match, vk::Recorder& recorder, const MatchAroundCase& c,
                    const std::string& what, std::mt19937& rng) {
   Image<std::uint8_t> left(c.size), right(c.size);
   test::fill(left.view(), c.how, rng);
@@ -83,7 +83,7 @@ TEST(MatchAroundVk, Agrees) {
     std::mt19937 rng(1);
     const auto match = must(vk::MatchAround::make(device));
     auto recorder = must(vk::Recorder::make(device));
-    for (const Case& c : cases()) {
+    for (const MatchAroundCase& c : cases()) {
       const std::string what = "match_around radius " + std::to_string(c.radius) + (c.masked ? " masked" : "") + where;
       expect_agrees(device, match, recorder, c, what, rng);
       if (::testing::Test::HasFailure()) return;

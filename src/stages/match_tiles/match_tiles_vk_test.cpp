@@ -38,7 +38,7 @@ struct Inputs {
   }
 };
 
-struct Case {
+struct MatchTilesCase {
   Size size;
   test::Fill how;
   bool masked, all;  // all: no sets
@@ -50,7 +50,7 @@ class MatchTilesOnDevice {
   explicit MatchTilesOnDevice(vk::Device& device)
       : device_(device), match_(must(vk::MatchTiles::make(device))), recorder_(must(vk::Recorder::make(device))) {}
 
-  void expect_agrees(const Case& c, const std::string& what) {
+  void expect_agrees(const MatchTilesCase& c, const std::string& what) {
     Inputs of(c.size, c.how, c.max_disparity, rng_);
     if (c.all)
       for (int t = 0; t < of.sets.words.height(); ++t)

@@ -6,7 +6,7 @@
 namespace duo {
 namespace {
 
-constexpr int kNone = Disparity::kNone;
+using test::kNone;
 
 struct Kept {
   Image<std::uint8_t> marks;

@@ -6,7 +6,7 @@
 namespace duo {
 namespace {
 
-constexpr std::uint16_t kNone = Disparity::kNone;
+using test::kNone;
 
 DepthSample sample(const Image<std::uint16_t>& d, const Area& area) { return ref::sample_depth(d, area); }
 

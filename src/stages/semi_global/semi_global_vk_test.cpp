@@ -26,7 +26,7 @@ Image<std::uint32_t> packed(const duo::MatchPlanes& planes) {
   return out;
 }
 
-struct Case {
+struct SemiGlobalCase {
   Size size;
   int max_disparity;
   SemiGlobalParams params;
@@ -53,7 +53,7 @@ SemiGlobalParams bounds() {
 /// The planes of two views, the right one a shifted and spoilt left one.
 struct Planes {
   PlaneImages left, right;
-  Planes(const Case& c, std::mt19937& rng)
+  Planes(const SemiGlobalCase& c, std::mt19937& rng)
       : left(c.size, simd::SemiGlobalScratch::padding(c.max_disparity)), right(c.size, left.pad) {
     Image<std::uint8_t> l(c.size), r(c.size), inside(c.size);
     test::fill(l.view(), c.how, rng);
@@ -68,7 +68,7 @@ struct Planes {
   }
 };
 
-void expect_agrees(vk::Device& device, vk::Recorder& recorder, const Case& c, const std::string& where) {
+void expect_agrees(vk::Device& device, vk::Recorder& recorder, const SemiGlobalCase& c, const std::string& where) {
   std::mt19937 rng(31);
   const auto stage = must(vk::SemiGlobal::make(device, c.max_disparity, c.params));
   const auto scratch = must(vk::SemiGlobal::Scratch::make(device, c.size, c.max_disparity, c.params));
@@ -102,12 +102,13 @@ void expect_agrees(vk::Device& device, vk::Recorder& recorder, const Case& c, co
 TEST(SemiGlobalVk, Agrees) {
   test::each_device([](vk::Device& device, const std::string& where) {
     auto recorder = must(vk::Recorder::make(device));
-    for (const Case& c :
-         {Case{{1, 1}, 1, paths(8)}, Case{{7, 5}, 3, paths(3), true}, Case{{33, 17}, 16, paths(4)},
-          Case{{17, 33}, 16, paths(5), true, false}, Case{{33, 17}, 37, paths(8), true},
-          Case{{64, 20}, 64, paths(3), false, false}, Case{{40, 6}, 128, paths(8)}, Case{{70, 5}, 129, paths(3), true},
-          Case{{31, 4}, 256, paths(3)}, Case{{31, 12}, 24, bounds(), true, true, test::Fill::kCheckerboard},
-          Case{{20, 12}, 24, bounds()}, Case{{20, 6}, 64, paths(3), false, true, test::Fill::kConstant}}) {
+    for (const SemiGlobalCase& c :
+         {SemiGlobalCase{{1, 1}, 1, paths(8)}, SemiGlobalCase{{7, 5}, 3, paths(3), true},
+          SemiGlobalCase{{33, 17}, 16, paths(4)}, SemiGlobalCase{{17, 33}, 16, paths(5), true, false},
+          SemiGlobalCase{{33, 17}, 37, paths(8), true}, SemiGlobalCase{{64, 20}, 64, paths(3), false, false},
+          SemiGlobalCase{{40, 6}, 128, paths(8)}, SemiGlobalCase{{70, 5}, 129, paths(3), true},
+          SemiGlobalCase{{31, 4}, 256, paths(3)}, SemiGlobalCase{{31, 12}, 24, bounds(), true, true, test::Fill::kCheckerboard},
+          SemiGlobalCase{{20, 12}, 24, bounds()}, SemiGlobalCase{{20, 6}, 64, paths(3), false, true, test::Fill::kConstant}}) {
       if (test::assisted() && c.size.width * c.max_disparity > 600) continue;
       expect_agrees(device, recorder, c, where);
       if (::testing::Test::HasFailure()) return;

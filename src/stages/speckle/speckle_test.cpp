@@ -6,7 +6,7 @@
 namespace duo {
 namespace {
 
-constexpr int kNone = Disparity::kNone;
+using test::kNone;
 
 // By hand, step 16: 100 100 / 100 . joins three pixels; 400 touches them only with a larger step; 110 is 4-connected to none.
 TEST(Speckle, HandWorked) {

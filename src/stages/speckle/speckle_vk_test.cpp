@@ -8,14 +8,14 @@ namespace {
 using test::must;
 using test::OnDevice;
 
-struct Case {
+struct SpeckleCase {
   Size size;
   unsigned levels;  // few: large islands, crossing each other
   int smallest;
 };
 
 // 20 apart: of another island with a step of 16; 0 .. 2 more: of the same one, and sometimes just beyond a step of 1.
-Image<std::uint16_t> patches(const Case& c, std::mt19937& rng) {
+Image<std::uint16_t> patches(const SpeckleCase& c, std::mt19937& rng) {
   Image<std::uint16_t> out(c.size);
   for (int y = 0; y < c.size.height; ++y)
     for (int x = 0; x < c.size.width; ++x)

@@ -9,7 +9,7 @@
 namespace duo {
 namespace {
 
-constexpr int kNone = Disparity::kNone;
+using test::kNone;
 
 TEST(HueCircle, IsSineAndCosine) {
   for (int hue = 0; hue < 256; ++hue) {
