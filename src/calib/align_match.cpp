@@ -1,8 +1,10 @@
 #include "calib/align_match.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <vector>
+
+#include "calib/normal_equations.h"
 
 namespace duo {
 namespace {
@@ -78,8 +80,8 @@ Round solve_round(View<const float> right, const Patch& patch, const Place& plac
       product += value * *left;
     }
   const double right_square_sum = square - sum * sum / static_cast<double>(patch.values.size());
-  return {information.ldlt().solve(pull), product / std::sqrt(patch.square_sum * right_square_sum),
-          kNoise_gray * std::sqrt(information.inverse()(1, 1))};
+  return {solve_normal(information, pull), product / std::sqrt(patch.square_sum * right_square_sum),
+          kNoise_gray * std::sqrt(inverse_of(information)(1, 1))};
 }
 
 }  // namespace

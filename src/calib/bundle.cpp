@@ -1,8 +1,10 @@
 #include "calib/bundle.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include "calib/normal_equations.h"
 
 namespace duo {
 namespace {
@@ -126,7 +128,7 @@ struct Reduced {
 Reduced reduced(const Equations& e, double damping) {
   Eigen::Matrix<double, 6, 6> pose = e.pose;
   pose.diagonal() *= 1 + damping;
-  const Eigen::Matrix<double, 6, kShared> solved = pose.ldlt().solve(e.mixed.transpose());
+  const Eigen::Matrix<double, 6, kShared> solved = solve_normal(pose, e.mixed.transpose());
   return {e.shared - e.mixed * solved, e.shared_slope - solved.transpose() * e.pose_slope};
 }
 
@@ -138,9 +140,10 @@ Eigen::MatrixXd solve_scaled(SharedMatrix m, const Eigen::MatrixXd& right, bool&
     scale[i] = 1 / std::sqrt(m(i, i));
   }
   const SharedMatrix scaled = scale.asDiagonal() * m * scale.asDiagonal();
-  const Eigen::LDLT<SharedMatrix> solver(scaled);
-  good = solver.info() == Eigen::Success && solver.vectorD().minCoeff() > 1e-12;
-  return scale.asDiagonal() * solver.solve(scale.asDiagonal() * right);
+  double weakest = 0;
+  const Eigen::MatrixXd solved = solve_normal(scaled, scale.asDiagonal() * right, &weakest);
+  good = weakest > 1e-12;
+  return scale.asDiagonal() * solved;
 }
 
 double total_cost(const std::vector<Equations>& all) {
@@ -192,7 +195,7 @@ bool descend(const std::vector<const BoardView*>& views, const Board& board, Bun
     for (std::size_t i = 0; i < views.size(); ++i) {
       Eigen::Matrix<double, 6, 6> pose = all[i].pose;
       pose.diagonal() *= 1 + damping;
-      const Pose6 by = pose.ldlt().solve(all[i].pose_slope - all[i].mixed.transpose() * step);
+      const Pose6 by = solve_normal(pose, all[i].pose_slope - all[i].mixed.transpose() * step);
       next.poses[i].left_from_board = moved_pose(bundle.poses[i].left_from_board, by);
     }
     std::vector<Equations> then = all_equations(next, views, board);

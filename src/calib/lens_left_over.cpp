@@ -1,10 +1,12 @@
 #include "calib/lens_left_over.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "calib/normal_equations.h"
 
 namespace duo {
 namespace {
@@ -101,7 +103,7 @@ std::optional<LensLeftOver> fit_lens_left_over(const SceneMatches& scene) {
         normal += weight * slope * slope.transpose();
         pull -= weight * error * slope;
       }
-      Parts step = normal.ldlt().solve(pull);
+      Parts step = solve_normal(normal, pull);
       const double longest = step.cwiseAbs().cwiseQuotient(prior).maxCoeff();
       if (longest > 1) step /= longest;
       parts += step;
@@ -111,7 +113,7 @@ std::optional<LensLeftOver> fit_lens_left_over(const SceneMatches& scene) {
   if (!parts.allFinite()) return {};
 
   LensLeftOver lens = lens_of(parts);
-  const PartsMatrix covariance = normal.inverse();
+  const PartsMatrix covariance = inverse_of(normal);
   const std::vector<double> errors = lens_row_errors_px(lens, near);
   struct Column {
     double off_px, sigma_px;

@@ -1,10 +1,11 @@
 #include "calib/row_offsets.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "calib/lens_left_over.h"
+#include "calib/normal_equations.h"
 
 namespace duo {
 namespace {
@@ -76,7 +77,7 @@ Terms fit_terms(const std::vector<RowDifference>& all, int width_px) {
       normal += weight * all[i].terms * all[i].terms.transpose();
       right += weight * all[i].px * all[i].terms;
     }
-    fit = normal.ldlt().solve(right);
+    fit = solve_normal(normal, right);
   }
   return fit;
 }

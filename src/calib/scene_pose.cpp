@@ -1,10 +1,11 @@
 #include "calib/scene_pose.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
+#include "calib/normal_equations.h"
 #include "calib/rig_formats.h"
 
 namespace duo {
@@ -182,7 +183,7 @@ Result<Solution> solve(const Problem& problem, const SceneFreedom& freedom, Weig
   PoseEquations equations;
   for (int round = 0; round < kRounds; ++round) {
     equations = equations_at(problem, freedom, weight_of, at);
-    Eigen::VectorXd step = equations.information.ldlt().solve(equations.pull);
+    Eigen::VectorXd step = solve_normal(equations.information, equations.pull);
     if (!step.allFinite()) return Error{ErrorCode::kBadInput, "no pose fits the points of the scene; show one with more depth"};
     double longest = 0;  // in standard deviations; the problem is far from linear in the focal length
     for (Eigen::Index j = 0; j < parts; ++j)
@@ -191,7 +192,7 @@ Result<Solution> solve(const Problem& problem, const SceneFreedom& freedom, Weig
     for (Eigen::Index j = 0; j < parts; ++j) at[problem.free()[static_cast<std::size_t>(j)]] += step[j];
     if (step.cwiseAbs().maxCoeff() < kConverged) break;
   }
-  return Solution{at, equations.information.inverse(), equations.sigma_px};
+  return Solution{at, inverse_of(equations.information), equations.sigma_px};
 }
 
 /// One standard deviation of the turn of the right camera to the left, from that of all parts.
