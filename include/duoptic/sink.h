@@ -59,8 +59,6 @@ void draw_hue(View<const Rgb8> src, View<Rgb8> dst);
 Result<void> write_png(View<const Rgb8> picture, const std::filesystem::path& path);
 Result<void> write_png(View<const std::uint8_t> picture, const std::filesystem::path& path);
 Result<void> write_png(View<const std::uint16_t> picture, const std::filesystem::path& path);
-/// Reads a gray PNG with all its bits; the values of one of 8 bits stay what they are.
-Result<Image<std::uint16_t>> read_png16(const std::filesystem::path& path);
 
 /// Coloured points of all pixels with a depth, in metres in the rig frame: binary little-endian PLY, x y z float, red green
 /// blue uchar.
@@ -145,9 +143,9 @@ Result<std::unique_ptr<Sink>> make_osc(const std::string& target, Axes axes);
 /// The same with the Virtual Motion Capture protocol: bones of a humanoid avatar as rotations from its T-pose.
 Result<std::unique_ptr<Sink>> make_vmc(const std::string& target, const TrackHeader& header);
 
-/// `sink` behind a thread and a queue, for live sources: write() copies what the sink wants and returns. The queue has room for two
-/// seconds of poses, or for four frames with their pictures; when it is full the oldest frame in it goes, and dropped() counts.
-/// Errors of `sink` come with the next call.
+/// `sink` behind a thread and a queue, for live sources: write() copies what the sink wants and returns. The queue has room for
+/// two seconds of poses, or for four frames with their pictures; when it is full the oldest frame in it goes, and dropped()
+/// counts. Errors of `sink` come with the next call.
 std::unique_ptr<Sink> in_background(std::unique_ptr<Sink> sink);
 
 /// The thesis's four panels: the raw left picture with joints as green boxes and bones as red lines, both broken where a joint

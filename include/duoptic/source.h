@@ -54,6 +54,11 @@ struct CameraWish {
 ///         the wished size, or that finds no room on its bus
 Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path, const CameraWish& wish = {});
 
+/// Reads a gray PNG with all its bits; the values of one of 8 bits stay what they are.
+///
+/// Errors  not there, not a whole PNG, coloured, more than 256 MiB
+Result<Image<std::uint16_t>> read_png16(const std::filesystem::path& path);
+
 /// Two views as one stream of pairs, each exactly once.
 class PairSource {
  public:

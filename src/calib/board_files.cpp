@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "calib/board_page.h"
+#include "core/coded_picture.h"
 #include "core/file.h"
 
 extern "C" {
@@ -57,9 +57,9 @@ void append_big_endian(std::string& to, std::uint32_t value) {
   for (const int shift : {24, 16, 8, 0}) to += static_cast<char>(value >> shift & 0xFF);
 }
 
-/// A PNG with its pixels a metre, which OpenCV does not write.
+/// A PNG with its pixels a metre instead of their shape.
 std::string with_scale(const std::string& png) {
-  constexpr std::size_t kHeader = 8 + 25;  // signature and IHDR, after which pHYs may stand
+  constexpr std::size_t kHeader = 8 + 25, kScale = 21;  // signature and IHDR, then pHYs
   std::string chunk = "pHYs";
   append_big_endian(chunk, 1000 * kPixelsPerMm);
   append_big_endian(chunk, 1000 * kPixelsPerMm);
@@ -69,7 +69,7 @@ std::string with_scale(const std::string& png) {
   std::string length;
   append_big_endian(length, static_cast<std::uint32_t>(chunk.size() - 4));
   append_big_endian(chunk, crc);
-  return png.substr(0, kHeader) + length + chunk + png.substr(kHeader);
+  return png.substr(0, kHeader) + length + chunk + png.substr(kHeader + kScale);
 }
 
 }  // namespace
@@ -118,20 +118,15 @@ std::string pdf_of(const BoardPage& page) {
          fmt::format("xref\n0 {0}\n{1}trailer\n<</Size {0}/Root 1 0 R>>\nstartxref\n{2}\n%%EOF\n", number + 1, table, table_at);
 }
 
-std::string png_of(const BoardPage& page) {
+std::string png_page(const BoardPage& page) {
   const cv::Size size(static_cast<int>(std::lround(page.width_mm * kPixelsPerMm)),
                       static_cast<int>(std::lround(page.height_mm * kPixelsPerMm)));
   cv::Mat ink = cv::Mat::zeros(size, CV_32F), gray;
   for (const PageRect& rect : page.black) fill(ink, rect);
   ink.convertTo(gray, CV_8U, -255, 255);
   for (const PageText& text : page.texts) write_words(gray, text);
-  std::vector<std::uint8_t> bytes;
-  try {
-    cv::imencode(".png", gray, bytes);
-  } catch (const cv::Exception&) {
-    return {};
-  }
-  return with_scale({bytes.begin(), bytes.end()});
+  const View<const std::uint8_t> pixels(gray.ptr(), {gray.cols, gray.rows}, static_cast<std::ptrdiff_t>(gray.step));
+  return with_scale(png_of(pixels));
 }
 
 Result<void> write_board(const Board& board, const Paper& paper, const std::filesystem::path& path) {
@@ -139,7 +134,7 @@ Result<void> write_board(const Board& board, const Paper& paper, const std::file
   const std::string ending = path.extension().string();
   if (ending == ".pdf") return write_file(path, pdf_of(page));
   if (ending == ".svg") return write_file(path, svg_of(page));
-  if (ending == ".png") return write_file(path, png_of(page));
+  if (ending == ".png") return write_file(path, png_page(page));
   return Error{ErrorCode::kBadInput,
                fmt::format("cannot write a board to '{}': give a name that ends with .pdf, .svg or .png", path.string())};
 }

@@ -30,6 +30,6 @@ Result<BoardPage> lay_out_board(const Board& board, const Paper& paper);
 /// The page as a file of each kind.
 std::string svg_of(const BoardPage& page);
 std::string pdf_of(const BoardPage& page);
-std::string png_of(const BoardPage& page);
+std::string png_page(const BoardPage& page);
 
 }  // namespace duo

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "core/coded_picture.h"
 
 extern "C" {
 #include <libavutil/base64.h>
@@ -65,14 +66,15 @@ Result<std::string> jpeg_text(const Image<Rgb8>& picture) {
   const cv::Mat rgb(picture.height(), picture.width(), CV_8UC3, const_cast<Rgb8*>(picture.row(0)),
                     static_cast<std::size_t>(picture.stride()) * sizeof(Rgb8));
   constexpr int kWidest = 960, kQuality = 85;
-  cv::Mat bgr;
-  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-  if (bgr.cols > kWidest) cv::resize(bgr, bgr, {}, double(kWidest) / bgr.cols, double(kWidest) / bgr.cols, cv::INTER_AREA);
-  std::vector<std::uint8_t> bytes;
-  if (!cv::imencode(".jpg", bgr, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality}))
-    return Error{ErrorCode::kWriteFailed, "cannot encode the rectified pair as JPEG"};
+  cv::Mat small = rgb;
+  if (rgb.cols > kWidest) cv::resize(rgb, small, {}, double(kWidest) / rgb.cols, double(kWidest) / rgb.cols, cv::INTER_AREA);
+  const View<const Rgb8> pixels(small.ptr<Rgb8>(), {small.cols, small.rows},
+                                static_cast<std::ptrdiff_t>(small.step / sizeof(Rgb8)));
+  const std::string bytes = jpeg_of(pixels, kQuality);
+  if (bytes.empty()) return Error{ErrorCode::kWriteFailed, "cannot encode the rectified pair as JPEG"};
   std::string text(AV_BASE64_SIZE(bytes.size()), '\0');
-  av_base64_encode(text.data(), static_cast<int>(text.size()), bytes.data(), static_cast<int>(bytes.size()));
+  av_base64_encode(text.data(), static_cast<int>(text.size()), reinterpret_cast<const std::uint8_t*>(bytes.data()),
+                   static_cast<int>(bytes.size()));
   text.resize(text.find('\0'));
   return text;
 }

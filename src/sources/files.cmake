@@ -6,15 +6,16 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/block_flow.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/in_step.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/files.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/gst_process.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/in_real_time.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/libav.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/pairs.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/pictures.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/recording.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/stream.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/stream_input.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/video.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/with_skew.cpp)
-target_link_libraries(duoptic PRIVATE opencv::videoio)
 duoptic_test(sources/files ${PROJECT_SOURCE_DIR}/src/sources/files_test.cpp)
 duoptic_test(sources/in_step ${PROJECT_SOURCE_DIR}/src/sources/in_step_test.cpp)
 foreach(file camera clock_model decode device look modes system_calls)

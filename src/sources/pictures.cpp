@@ -6,6 +6,8 @@
 #include <iterator>
 #include <string>
 
+#include "core/file.h"
+#include "duoptic/source.h"
 #include "sources/libav.h"
 
 namespace duo {
@@ -48,8 +50,10 @@ bool has_its_end(AVCodecID codec, std::string_view bytes) {
   return true;
 }
 
-/// Decodes a whole file as one packet; nullptr when any part of it is missing or damaged.
-av::DecodedFrame decode(AVCodecID codec, const std::string& bytes) {
+/// Decodes a whole file as one packet; nullptr when it is no picture or any part of it is missing or damaged.
+av::DecodedFrame decode(const std::string& bytes) {
+  const AVCodecID codec = picture_codec(bytes);
+  if (!has_its_end(codec, bytes)) return nullptr;
   const av::Decoder decoder = av::open_decoder(codec, [](AVCodecContext& context) {
     context.err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER;
     // libav's TIFF decoder refuses whole files when told to be strict, and cut ones always.
@@ -99,8 +103,7 @@ Result<std::unique_ptr<Source>> open_picture(const std::filesystem::path& path) 
   if (file.bad() || bytes.size() > kMaxBytes)
     return Error{ErrorCode::kBadInput,
                  fmt::format("cannot read picture {}: reading failed or it is larger than 1 GiB", path.string())};
-  const AVCodecID codec = picture_codec(bytes);
-  const av::DecodedFrame frame = has_its_end(codec, bytes) ? decode(codec, bytes) : nullptr;
+  const av::DecodedFrame frame = decode(bytes);
   if (!frame)
     return Error{ErrorCode::kBadInput,
                  fmt::format("cannot read picture {}: it is cut short or damaged; copy or record it again", path.string())};
@@ -110,6 +113,26 @@ Result<std::unique_ptr<Source>> open_picture(const std::filesystem::path& path) 
                  fmt::format("cannot read picture {}: its size or kind of pixels is not supported; save it as an 8-bit PNG",
                              path.string())};
   return std::unique_ptr<Source>(std::make_unique<PictureFile>(std::move(pixels)));
+}
+
+Result<Image<std::uint16_t>> read_png16(const std::filesystem::path& path) {
+  constexpr std::size_t kMaxBytes = std::size_t{1} << 28;
+  DUO_TRY_ASSIGN(const std::string bytes, read_file(path, kMaxBytes, "PNG picture"));
+  const auto refused = [&](const char* why) {
+    return Error{ErrorCode::kBadInput, fmt::format("cannot read PNG picture '{}': {}", path.string(), why)};
+  };
+  const av::DecodedFrame frame = picture_codec(bytes) == AV_CODEC_ID_PNG ? decode(bytes) : nullptr;
+  if (!frame) return refused("it is no PNG picture, or cut short");
+  if (frame->format != AV_PIX_FMT_GRAY8 && frame->format != AV_PIX_FMT_GRAY16BE)
+    return refused("it is coloured; give a gray one of 8 or 16 bits");
+  Image<std::uint16_t> out({frame->width, frame->height});
+  for (int y = 0; y < out.height(); ++y) {
+    const std::uint8_t* from = frame->data[0] + std::ptrdiff_t{y} * frame->linesize[0];
+    for (int x = 0; x < out.width(); ++x)
+      out.at(y, x) =
+          frame->format == AV_PIX_FMT_GRAY8 ? from[x] : static_cast<std::uint16_t>(from[2 * x] << 8 | from[2 * x + 1]);
+  }
+  return out;
 }
 
 }  // namespace duo

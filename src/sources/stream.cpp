@@ -2,87 +2,66 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
-#include <opencv2/core/utils/logger.hpp>
-#include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 #include <thread>
 #include <utility>
 
 #include "core/clock.h"
-#include "core/libav.h"
+#include "sources/stream_input.h"
 
 namespace duo {
 namespace {
 
-constexpr char kPipeline[] = "gst:";
 constexpr auto kFirstPicture = std::chrono::seconds(10);
 constexpr auto kStreamPatience = std::chrono::milliseconds(500);
 constexpr auto kTryAgain = std::chrono::milliseconds(500);
-constexpr auto kGoodbye = std::chrono::seconds(3);  // longer than every time-out below
-constexpr int kOpenTimeout_ms = 2000, kReadTimeout_ms = 2000;
+constexpr auto kGoodbye = std::chrono::seconds(3);
 
-/// What the reading thread and its source share. It outlives the source while a call into OpenCV hangs: there is no way to end
-/// one.
+/// What the reading thread and its source share. It outlives the source while a name is looked up in the network: there is no
+/// way to end that.
 struct StreamState {
   std::string name;
   std::mutex mutex;
   std::condition_variable changed;
-  cv::Mat newest;             // BGR
-  TimeNs t_ns = 0;            // of its arrival
+  Picture newest;             // stamped with its arrival
   std::uint64_t arrived = 0;  // pictures so far
   double rate_hz = 0;
-  std::string trouble;
-  bool stopped = false, ended = false;
+  std::string trouble, why;  // why: it could not be opened
+  std::atomic<bool> stopped = false;
+  bool ended = false;
 };
 
-/// What libraries print is said in our results.
-void silence() {
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  av_log_set_callback([](void*, int, const char*, va_list) {});  // a level would be set again by OpenCV
-}
-
-cv::VideoCapture open_capture(const std::string& name) {
-  const bool pipeline = name.rfind(kPipeline, 0) == 0;
-  cv::VideoCapture capture;
-  if (pipeline)
-    capture.open(name.substr(sizeof kPipeline - 1), cv::CAP_GSTREAMER);
-  else
-    capture.open(name, cv::CAP_FFMPEG,
-                 {cv::CAP_PROP_OPEN_TIMEOUT_MSEC, kOpenTimeout_ms, cv::CAP_PROP_READ_TIMEOUT_MSEC, kReadTimeout_ms});
-  return capture;
-}
-
 /// Until the stream breaks off or is no longer wanted.
-void read_stream(StreamState& state) {
-  cv::VideoCapture capture = open_capture(state.name);
-  cv::Mat picture;
-  while (capture.isOpened() && capture.read(picture) && picture.type() == CV_8UC3) {
+///
+/// Returns  "" or why it could not be opened
+std::string read_stream(StreamState& state) {
+  StreamInput input([&] { return state.stopped.load(); });
+  if (std::string why = input.open(state.name); !why.empty()) return why;
+  Picture picture;
+  while (input.next(picture)) {
     const std::lock_guard lock(state.mutex);
-    if (state.stopped) return;
-    cv::swap(state.newest, picture);
-    state.t_ns = wall_ns();
-    if (state.arrived++ == 0) state.rate_hz = capture.get(cv::CAP_PROP_FPS);
+    if (state.stopped) break;
+    std::swap(state.newest, picture);
+    state.newest.t_ns = wall_ns();
+    if (state.arrived++ == 0) state.rate_hz = input.rate_hz();
     state.trouble.clear();
     state.changed.notify_all();
   }
+  return {};
 }
 
 void run_stream(const std::shared_ptr<StreamState>& state) {
-  silence();
+  av_log_set_level(AV_LOG_QUIET);  // what is wrong is said in our results
   while (true) {
-    try {
-      read_stream(*state);
-    } catch (const std::exception&) {  // of OpenCV: as if it had broken off
-    }
+    const std::string why = read_stream(*state);
     std::unique_lock lock(state->mutex);
-    state->trouble = fmt::format("{} is away: it gives no pictures; opening it again", state->name);
+    state->why = why;
+    state->trouble = fmt::format("{} is away: {}; opening it again", state->name, why.empty() ? "it gives no pictures" : why);
     state->changed.notify_all();
-    state->changed.wait_for(lock, kTryAgain, [&] { return state->stopped; });
+    state->changed.wait_for(lock, kTryAgain, [&] { return state->stopped.load(); });
     if (state->stopped) break;
   }
   const std::lock_guard lock(state->mutex);
@@ -113,11 +92,13 @@ class Stream final : public Source {
     std::unique_lock lock(state_->mutex);
     state_->changed.wait_for(lock, kFirstPicture, [this] { return state_->arrived > 0 || !state_->trouble.empty(); });
     if (state_->arrived == 0)
-      return Error{ErrorCode::kNotFound,
-                   fmt::format("cannot open stream {}: it gives no picture; is its camera on, and the address right, or is the "
-                               "pipeline's every element installed and the last one appsink?",
-                               state_->name)};
-    size_ = {state_->newest.cols, state_->newest.rows};
+      return Error{
+          ErrorCode::kNotFound,
+          fmt::format("cannot open stream {}: {}; {}", state_->name, state_->why.empty() ? "it gives no picture" : state_->why,
+                      state_->name.starts_with(kGstPrefix)
+                          ? "does the pipeline run with gst-launch-1.0 and '! videoconvert ! autovideosink' after it?"
+                          : "is its camera on, and the address right?")};
+    size_ = state_->newest.pixels.size();
     if (state_->rate_hz >= 1 && state_->rate_hz <= 1000) frame_s_ = 1 / state_->rate_hz;
     return {};
   }
@@ -136,13 +117,9 @@ class Stream final : public Source {
   Result<Next> next(Picture& into) override {
     std::unique_lock lock(state_->mutex);
     if (!state_->changed.wait_for(lock, kStreamPatience, [this] { return state_->arrived > given_; })) return Next::kNothing;
-    if (Size{state_->newest.cols, state_->newest.rows} != size_)
+    if (state_->newest.pixels.size() != size_)
       return Error{ErrorCode::kUnsupported, fmt::format("cannot read stream {}: its pictures change size", state_->name)};
-    if (into.pixels.size() != size_) into.pixels = Image<Rgb8>(size_);
-    cv::Mat rgb(size_.height, size_.width, CV_8UC3, into.pixels.row(0),
-                static_cast<std::size_t>(into.pixels.stride()) * sizeof(Rgb8));
-    cv::cvtColor(state_->newest, rgb, cv::COLOR_BGR2RGB);
-    into.t_ns = state_->t_ns;
+    std::swap(into, state_->newest);  // what was given last holds the next one's memory
     into.sequence = state_->arrived - 1;
     dropped_ += static_cast<std::int64_t>(state_->arrived - given_ - 1);
     given_ = state_->arrived;
@@ -161,8 +138,8 @@ class Stream final : public Source {
 }  // namespace
 
 bool is_stream_name(const std::string& name) {
-  for (const char* prefix : {"http://", "https://", "rtsp://", kPipeline})
-    if (name.rfind(prefix, 0) == 0) return true;
+  for (const char* prefix : {"http://", "https://", "rtsp://", kGstPrefix})
+    if (name.starts_with(prefix)) return true;
   return false;
 }
 

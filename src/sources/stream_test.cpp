@@ -10,8 +10,10 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <thread>
 
+#include "sources/stream_input.h"
 #include "tests/write_media.h"
 
 namespace duo {
@@ -111,6 +113,85 @@ TEST(Stream, NoneThereIsSaidAtOnce) {
   const auto stream = open_stream("http://127.0.0.1:1/nothing");
   ASSERT_FALSE(stream);
   EXPECT_NE(stream.error().what.find("cannot open stream http://127.0.0.1:1/nothing"), std::string::npos);
+}
+
+TEST(Stream, PipelineIsSplitAsAShellDoes) {
+  EXPECT_EQ(words_of("v4l2src  device=/dev/video0 ! video/x-raw,width=640"),
+            (std::vector<std::string>{"v4l2src", "device=/dev/video0", "!", "video/x-raw,width=640"}));
+  EXPECT_EQ(words_of(" filesrc location=\"a b.mp4\" name='it is' "),
+            (std::vector<std::string>{"filesrc", "location=a b.mp4", "name=it is"}));
+  EXPECT_TRUE(words_of("  ").empty());
+}
+
+/// A gst-launch-1.0 of our own, first in PATH: a shell script.
+class Gst : public ::testing::Test {
+ protected:
+  void SetUp() override { setenv("PATH", ((folder_ / "").string() + ":" + path_).c_str(), 1); }
+  void TearDown() override { setenv("PATH", path_.c_str(), 1); }
+  void launch(const std::string& script) {
+    const auto file = folder_ / "gst-launch-1.0";
+    test::put(file, "#!/bin/sh\n" + script);
+    std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+  }
+  std::string path_ = std::getenv("PATH");
+  test::TempFolder folder_;
+};
+
+// Two pictures of 2x1 pixels, Y, then U and V: white and black, then gray twice.
+constexpr char kTwoPictures[] =
+    "printf 'YUV4MPEG2 W2 H1 F15:1 Ip A1:1 "
+    "C444\\nFRAME\\n\\353\\020\\200\\200\\200\\200FRAME\\n\\176\\176\\200\\200\\200\\200'\n";
+
+TEST_F(Gst, PicturesComeAndOneThatHangsIsEnded) {
+  const std::string words = (folder_ / "words").string();
+  launch("echo \"$@\" >" + words + "\n" + kTwoPictures + "exec sleep 1000\n");
+  auto stream = open_stream("gst:fakesrc name=\"a b\" ! appsink drop=true");
+  ASSERT_TRUE(stream) << stream.error().what;
+  EXPECT_EQ((*stream)->size(), (Size{2, 1}));
+  EXPECT_NEAR((*stream)->frame_s(), 1.0 / 15, 1e-9);
+  Picture picture;
+  while (picture.sequence < 1) ASSERT_TRUE((*stream)->next(picture));
+  for (int x = 0; x < 2; ++x) EXPECT_NEAR(picture.pixels.at(0, x).g, 128, 1);
+  EXPECT_EQ(test::bytes_of(words),
+            "-q fakesrc name=a b ! videoconvert ! video/x-raw,format=Y444,colorimetry=bt601 ! y4menc ! fdsink fd=1\n");
+  const auto start = std::chrono::steady_clock::now();
+  stream->reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 1s);
+}
+
+TEST_F(Gst, OneThatEndsIsStartedAgain) {
+  launch(std::string(kTwoPictures) + "sleep 0.1\n");
+  const auto stream = open_stream("gst:fakesrc");
+  ASSERT_TRUE(stream) << stream.error().what;
+  Picture picture;
+  while (picture.sequence < 3) ASSERT_TRUE((*stream)->next(picture));  // of the second time
+}
+
+TEST_F(Gst, WhatItSaysIsPassedOn) {
+  launch(
+      "echo 'Use Windows high-resolution clock' >&2; echo 'WARNING: erroneous pipeline: no element \"nosuch\"' >&2; exit 1\n");
+  const auto stream = open_stream("gst:nosuch ! appsink");
+  ASSERT_FALSE(stream);
+  EXPECT_EQ(stream.error().what.find("cannot open stream gst:nosuch ! appsink: erroneous pipeline: no element \"nosuch\"; "),
+            0u)
+      << stream.error().what;
+  std::filesystem::remove(folder_ / "gst-launch-1.0");
+  setenv("PATH", (folder_ / "").c_str(), 1);
+  EXPECT_NE(open_stream("gst:fakesrc").error().what.find("install gstreamer1.0-tools"), std::string::npos);
+  EXPECT_NE(open_stream("gst:").error().what.find("it is empty"), std::string::npos);
+}
+
+TEST(Stream, GstreamerItself) {
+  if (std::system("gst-inspect-1.0 --exists y4menc >/dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no GStreamer";
+  const auto stream =
+      open_stream("gst:videotestsrc is-live=true pattern=red ! video/x-raw,width=64,height=48,framerate=30/1 ! appsink");
+  ASSERT_TRUE(stream) << stream.error().what;
+  EXPECT_EQ((*stream)->size(), (Size{64, 48}));
+  Picture picture;
+  while (picture.sequence < 5) ASSERT_TRUE((*stream)->next(picture));
+  EXPECT_NEAR(picture.pixels.at(20, 30).r, 255, 2);
+  EXPECT_NEAR(picture.pixels.at(20, 30).g, 0, 2);
+  EXPECT_NEAR(picture.pixels.at(20, 30).b, 0, 2);
 }
 
 }  // namespace

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
-#include <vector>
+#include "core/coded_picture.h"
 
 namespace duo {
 
@@ -36,16 +34,7 @@ Result<AviWriter> AviWriter::open(const std::filesystem::path& path, Size size, 
 }
 
 Result<void> AviWriter::write(View<const Rgb8> picture) {
-  const cv::Mat rgb(picture.height(), picture.width(), CV_8UC3, const_cast<Rgb8*>(picture.data()),
-                    static_cast<std::size_t>(picture.stride()) * sizeof(Rgb8));
-  std::vector<std::uint8_t> jpeg;
-  try {
-    cv::Mat bgr;
-    cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-    cv::imencode(".jpg", bgr, jpeg, {cv::IMWRITE_JPEG_QUALITY, quality_});
-  } catch (const cv::Exception&) {
-    jpeg.clear();
-  }
+  const std::string jpeg = jpeg_of(picture, quality_);
   if (jpeg.empty()) return failed(AVERROR_ENCODER_NOT_FOUND);
   if (const int e = av_new_packet(packet_.get(), static_cast<int>(jpeg.size())); e < 0) return failed(e);
   std::copy(jpeg.begin(), jpeg.end(), packet_->data);

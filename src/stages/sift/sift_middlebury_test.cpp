@@ -2,8 +2,8 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 
+#include "duoptic/source.h"
 #include "tests/data.h"
 #include "tests/sift_views.h"
 
@@ -19,9 +19,14 @@ class SiftMiddlebury : public testing::Test {
     if (!fs::exists(folder_)) GTEST_SKIP() << "skipped: no data";
   }
   cv::Mat read(const std::string& scene, const char* name) const {
-    cv::Mat out = cv::imread((folder_ / scene / name).string(), cv::IMREAD_GRAYSCALE);
-    EXPECT_FALSE(out.empty()) << scene << " " << name;
-    return out;
+    Picture picture;
+    const auto file = open_source(folder_ / scene / name);
+    EXPECT_TRUE(file && (*file)->next(picture)) << scene << " " << name;
+    const cv::Mat rgb(picture.pixels.height(), picture.pixels.width(), CV_8UC3, picture.pixels.row(0),
+                      static_cast<std::size_t>(picture.pixels.stride()) * sizeof(Rgb8));
+    cv::Mat gray;
+    cv::cvtColor(rgb, gray, cv::COLOR_RGB2GRAY);
+    return gray;
   }
   fs::path folder_;
 };
