@@ -17,7 +17,9 @@ instructions() {
 
 failed=0 new=
 while read -r matcher kept; do
-  now=$(($(instructions "$matcher" 3) / 3))
+  counted=$(instructions "$matcher" 3)
+  ((counted > 0)) || { cat "$log"; echo "$matcher: nothing was counted"; exit 1; }
+  now=$((counted / 3))
   echo "$matcher: $now instructions a frame, kept $kept"
   new+="$matcher $now"$'\n'
   if ((now * 10 > kept * 11 || now * 10 < kept * 9)); then
