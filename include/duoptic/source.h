@@ -54,7 +54,7 @@ struct CameraWish {
 ///         the wished size, or that finds no room on its bus
 Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path, const CameraWish& wish = {});
 
-/// Reads a gray PNG with all its bits; the values of one of 8 bits stay what they are.
+/// Reads a gray PNG with all its bits; the values of one of 8 bits stay what they are, one bit is 0 or 255.
 ///
 /// Errors  not there, not a whole PNG, coloured, more than 256 MiB
 Result<Image<std::uint16_t>> read_png16(const std::filesystem::path& path);

@@ -114,11 +114,19 @@ TEST_F(Sinks, PngKeepsEveryPixel) {
     EXPECT_EQ(depth_back->at(6, x), depth.at(6, x));
     EXPECT_EQ(gray_back->at(6, x), gray.at(6, x));
   }
+  cv::Mat black_and_white(7, 31, CV_8UC1);
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 31; ++x) black_and_white.at<std::uint8_t>(y, x) = gray.at(y, x) < 128 ? 0 : 255;
+  ASSERT_TRUE(cv::imwrite((folder_ / "one_bit.png").string(), black_and_white, {cv::IMWRITE_PNG_BILEVEL, 1}));
+  const auto one_bit = read_png16(folder_ / "one_bit.png");
+  ASSERT_TRUE(one_bit) << one_bit.error().what;
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 31; ++x) ASSERT_EQ(one_bit->at(y, x), black_and_white.at<std::uint8_t>(y, x)) << y << " " << x;
   EXPECT_FALSE(read_png16(folder_ / "color.png"));
   EXPECT_FALSE(read_png16(folder_ / "none.png"));
   EXPECT_FALSE(write_png(View<const std::uint8_t>(), folder_ / "empty.png"));
   EXPECT_FALSE(write_png(View<const Rgb8>(), folder_ / "empty.png"));
-  EXPECT_EQ(files(), 3);
+  EXPECT_EQ(files(), 4);
 }
 
 // By hand: f = 100, b = 0.1 m, centre (1, 0); d = 5 px is z = 2 m; the pixel at x = 0 lies 2 / 100 = 0.02 m to the left.

@@ -123,14 +123,19 @@ Result<Image<std::uint16_t>> read_png16(const std::filesystem::path& path) {
   };
   const av::DecodedFrame frame = picture_codec(bytes) == AV_CODEC_ID_PNG ? decode(bytes) : nullptr;
   if (!frame) return refused("it is no PNG picture, or cut short");
-  if (frame->format != AV_PIX_FMT_GRAY8 && frame->format != AV_PIX_FMT_GRAY16BE)
-    return refused("it is coloured; give a gray one of 8 or 16 bits");
   Image<std::uint16_t> out({frame->width, frame->height});
   for (int y = 0; y < out.height(); ++y) {
     const std::uint8_t* from = frame->data[0] + std::ptrdiff_t{y} * frame->linesize[0];
-    for (int x = 0; x < out.width(); ++x)
-      out.at(y, x) =
-          frame->format == AV_PIX_FMT_GRAY8 ? from[x] : static_cast<std::uint16_t>(from[2 * x] << 8 | from[2 * x + 1]);
+    for (int x = 0; x < out.width(); ++x) {
+      if (frame->format == AV_PIX_FMT_GRAY8)
+        out.at(y, x) = from[x];
+      else if (frame->format == AV_PIX_FMT_GRAY16BE)
+        out.at(y, x) = static_cast<std::uint16_t>(from[2 * x] << 8 | from[2 * x + 1]);
+      else if (frame->format == AV_PIX_FMT_MONOBLACK)
+        out.at(y, x) = (from[x / 8] >> (7 - x % 8) & 1) != 0 ? 255 : 0;
+      else
+        return refused("it is coloured; give a gray one");
+    }
   }
   return out;
 }
