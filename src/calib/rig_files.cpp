@@ -1,12 +1,15 @@
 #include "duoptic/rig_files.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core/persistence.hpp>
 #include <span>
 #include <system_error>
+#include <utility>
+#include <vector>
 
+#include "calib/normal_equations.h"
 #include "calib/opencv_rectified.h"
 #include "calib/rig_formats.h"
 #include "core/file.h"
@@ -79,20 +82,26 @@ Radtan radtan_of(const Camera& camera) {
   const auto& d = camera.distortion;
   if (d[4] == 0 && !has_denominator(camera)) return {{d[0], d[1], d[2], d[3]}, 0};
   const Lens lens(camera);
-  std::vector<std::array<double, 5>> rows;  // of the equations, the right side last
+  std::vector<std::pair<Eigen::Vector4d, double>> rows;  // of the equations, and their right sides
+  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d pull = Eigen::Vector4d::Zero();
+  const auto add = [&](const Eigen::Vector4d& row, double right) {
+    rows.emplace_back(row, right);
+    information += row * row.transpose();
+    pull += right * row;
+  };
   for (int i = 0; i <= kSteps; ++i)
     for (int j = 0; j <= kSteps; ++j) {
       const Vec2 pixel = {(camera.size.width - 1.0) * j / kSteps, (camera.size.height - 1.0) * i / kSteps};
       const auto ray = lens.ray_of(pixel);
       if (!ray) continue;
       const double x = ray->x, y = ray->y, r2 = x * x + y * y;
-      rows.push_back({x * r2, x * r2 * r2, 2 * x * y, r2 + 2 * x * x, (pixel.x - camera.cx_px) / camera.fx_px - x});
-      rows.push_back({y * r2, y * r2 * r2, r2 + 2 * y * y, 2 * x * y, (pixel.y - camera.cy_px) / camera.fy_px - y});
+      add({x * r2, x * r2 * r2, 2 * x * y, r2 + 2 * x * x}, (pixel.x - camera.cx_px) / camera.fx_px - x);
+      add({y * r2, y * r2 * r2, r2 + 2 * y * y, 2 * x * y}, (pixel.y - camera.cy_px) / camera.fy_px - y);
     }
-  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 5, Eigen::RowMajor>> m(
-      rows.data()->data(), static_cast<Eigen::Index>(rows.size()), 5);
-  const Eigen::Vector4d k = m.leftCols<4>().colPivHouseholderQr().solve(m.col(4));
-  const double worst = (m.leftCols<4>() * k - m.col(4)).cwiseAbs().maxCoeff();
+  const Eigen::Vector4d k = solve_normal(information, pull);
+  double worst = 0;
+  for (const auto& [row, right] : rows) worst = std::max(worst, std::abs(row.dot(k) - right));
   return {{k[0], k[1], k[2], k[3]}, worst * std::max(camera.fx_px, camera.fy_px)};
 }
 
