@@ -287,6 +287,23 @@ TEST(HandFinder, FarEndLessTheHandsLength) {
   EXPECT_FALSE(finder.find(grid, silhouette, cells, elbow, 0.25, 0.1, &elsewhere, params));
 }
 
+// A sleeve ends 22 cm from the elbow, and the hand, bent away, reaches 12 cm beyond: its centre is not 10 cm behind that, which
+// is in the sleeve, but a palm's 5 cm beyond the sleeve's end.
+TEST(HandFinder, ABentHandBeginsAtTheSleeve) {
+  Grid grid(geometry());
+  Silhouette silhouette(grid);
+  for (int y = 37; y < 45; ++y) fill_row(grid, y, 52, 64, 1.0F, silhouette.skin);
+  std::vector<int> cells;
+  for (int i = 0; i < grid.size(); ++i)
+    if (silhouette.skin[static_cast<std::size_t>(i)]) cells.push_back(i);
+  const Params params;
+  const auto seen =
+      HandFinder(grid).find(grid, silhouette, cells, grid.camera.point({30, 40.5}, 1), 0.25, 0.1, nullptr, params);
+  ASSERT_TRUE(seen);
+  EXPECT_NEAR(seen->tip_m, 0.335, 0.015);
+  expect_near(seen->p, behind(grid.camera.point({52 + 5, 40.5}, 1), params.hand_depth_m), 0.01);
+}
+
 // In the picture's plane: turns out of it move points by less than a pixel, and are left to the prediction.
 TEST(FitTorso, RecoversAKnownMotionDespiteOutliers) {
   const Pinhole camera{600, 320, 240, 0.1};

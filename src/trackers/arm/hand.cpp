@@ -34,6 +34,13 @@ HandFinder::HandFinder(const Grid& grid) {
   depths_m_.reserve(static_cast<std::size_t>(grid.size()));
 }
 
+/// The distance from the elbow that this share of the gathered cells lies within.
+double HandFinder::distance_within(double share) {
+  const auto at = far_.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(far_.size() - 1));
+  std::nth_element(far_.begin(), at, far_.end(), [](const Far& a, const Far& b) { return a.distance_m < b.distance_m; });
+  return at->distance_m;
+}
+
 /// Gathers the cells a hand may cover; returns the distance of the tips, which single far cells do not move. 0 = too few.
 double HandFinder::collect(const Grid& grid, std::span<const int> cells, Vec3 elbow, double fore_m, const Gate* gate) {
   constexpr double kBeyondM = 0.30;  // fingertips lie this far behind the wrist at most
@@ -45,10 +52,15 @@ double HandFinder::collect(const Grid& grid, std::span<const int> cells, Vec3 el
     if (gate && norm(p - gate->centre) > gate->radius_m) continue;
     if (const double d = norm(p - elbow); d <= fore_m + kBeyondM) far_.push_back({d, p, i});
   }
-  if (far_.size() < kLeastCells) return 0;
-  const auto tip = far_.begin() + static_cast<std::ptrdiff_t>(kTips * static_cast<double>(far_.size() - 1));
-  std::nth_element(far_.begin(), tip, far_.end(), [](const Far& a, const Far& b) { return a.distance_m < b.distance_m; });
-  return tip->distance_m;
+  return far_.size() < kLeastCells ? 0 : distance_within(kTips);
+}
+
+/// From the elbow to the hand's centre. A stretched hand's lies centre_m behind the tips; one bent at the wrist, or a fist,
+/// reaches less far, but its centre is no nearer to where a sleeve lets it out than a palm is long.
+double HandFinder::along(double tip_m, double centre_m, double palm_m) {
+  constexpr double kSleeve = 0.05;    // quantile of distance; of a bare arm, far behind the wrist
+  constexpr double kFingersM = 0.03;  // before the centre at least
+  return std::max(tip_m - centre_m, std::min(distance_within(kSleeve) + palm_m, tip_m - kFingersM));
 }
 
 double HandFinder::median_of_depths() {
@@ -108,7 +120,8 @@ std::optional<HandSeen> HandFinder::find(const Grid& grid, const Silhouette& sil
   }
   if (depths_m_.size() < kLeastCells) return {};
   const Vec3 start = (1 / weights) * mean;
-  out.p = behind(centre(elbow, start, out.tip_m - centre_m, median_of_depths()), params.hand_depth_m);
+  const double z_m = median_of_depths(), along_m = along(out.tip_m, centre_m, params.palm_m);
+  out.p = behind(centre(elbow, start, along_m, z_m), params.hand_depth_m);
   out.cut = cut_beyond(grid, elbow, out);
   return out;
 }

@@ -40,6 +40,8 @@ class HandFinder {
     int cell;
   };
   double collect(const Grid& grid, std::span<const int> cells, Vec3 elbow, double fore_m, const Gate* gate);
+  double distance_within(double share);
+  double along(double tip_m, double centre_m, double palm_m);
   double median_of_depths();
   Vec3 centre(Vec3 elbow, Vec3 start, double along_m, double z_m);
 

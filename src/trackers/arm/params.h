@@ -13,6 +13,7 @@ struct Params {
   double fore_radius_m = 0.032;     // of the forearm
   double hand_length_m = 0.19;      // fingertips to wrist
   double hand_centre_m = 0.115;     // fingertips to the centre of a stretched hand
+  double palm_m = 0.05;             // from the wrist to the hand's centre at least
   double least_hand_m2 = 0.0025;    // a hand seen edge on
   double shoulder_lift_m = 0.070;   // how far the collar bone lifts the joint when the upper arm turns from down to up, halved
   double shoulder_forward_m = 0.035;  // likewise along the viewing axis
