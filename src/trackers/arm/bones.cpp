@@ -42,7 +42,7 @@ struct Hypothesis {
   double score;
 };
 
-/// Hypotheses weighed by their likelihood; no heap.
+/// Hypotheses weighed by their likelihood, whose logarithm their scores are; no heap.
 class Hypotheses {
  public:
   void add(Vec3 p, double score) {
@@ -52,10 +52,9 @@ class Hypotheses {
   }
   double best() const { return best_; }
   ElbowSeen sum_up() const {
-    constexpr double kSharpness = 2;
     Vec3 mean;
     double weights = 0, variance = 0;
-    const auto weight = [&](const Hypothesis& h) { return std::exp(kSharpness * (h.score - best_)); };
+    const auto weight = [&](const Hypothesis& h) { return std::exp(h.score - best_); };
     for (std::size_t i = 0; i < count_; ++i) {
       mean = mean + weight(items_[i]) * items_[i].p;
       weights += weight(items_[i]);
