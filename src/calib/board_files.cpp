@@ -126,7 +126,8 @@ std::string png_page(const BoardPage& page) {
   ink.convertTo(gray, CV_8U, -255, 255);
   for (const PageText& text : page.texts) write_words(gray, text);
   const View<const std::uint8_t> pixels(gray.ptr(), {gray.cols, gray.rows}, static_cast<std::ptrdiff_t>(gray.step));
-  return with_scale(png_of(pixels));
+  const std::string png = png_of(pixels);
+  return png.empty() ? png : with_scale(png);
 }
 
 Result<void> write_board(const Board& board, const Paper& paper, const std::filesystem::path& path) {
@@ -134,7 +135,14 @@ Result<void> write_board(const Board& board, const Paper& paper, const std::file
   const std::string ending = path.extension().string();
   if (ending == ".pdf") return write_file(path, pdf_of(page));
   if (ending == ".svg") return write_file(path, svg_of(page));
-  if (ending == ".png") return write_file(path, png_page(page));
+  if (ending == ".png") {
+    const std::string png = png_page(page);
+    if (png.empty())
+      return Error{ErrorCode::kWriteFailed,
+                   fmt::format("cannot write '{}': the page cannot be encoded as PNG; give a name that ends with .pdf or .svg",
+                               path.string())};
+    return write_file(path, png);
+  }
   return Error{ErrorCode::kBadInput,
                fmt::format("cannot write a board to '{}': give a name that ends with .pdf, .svg or .png", path.string())};
 }

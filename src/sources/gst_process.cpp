@@ -1,3 +1,5 @@
+#include "sources/gst_process.h"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
@@ -6,10 +8,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <string_view>
-
-#include "sources/stream_input.h"
 
 namespace duo {
 

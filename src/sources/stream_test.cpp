@@ -13,7 +13,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "sources/stream_input.h"
+#include "sources/gst_process.h"
 #include "tests/write_media.h"
 
 namespace duo {
