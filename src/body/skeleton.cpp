@@ -1,0 +1,79 @@
+#include "duoptic/skeleton.h"
+
+#include <algorithm>
+#include <array>
+
+namespace duo {
+namespace {
+
+using enum JointId;
+
+constexpr std::array<JointDef, kJointIds> kBodyJoints = {{
+    {kPelvis, "pelvis", -1, Side::kMiddle, 0.15},
+    {kSpine, "spine", 0, Side::kMiddle, 0.15},
+    {kChest, "chest", 1, Side::kMiddle, 0.16},
+    {kNeck, "neck", 2, Side::kMiddle, 0.08},
+    {kHead, "head", 3, Side::kMiddle, 0.13},
+    {kLeftShoulder, "left_shoulder", 2, Side::kLeft, 0.11},
+    {kLeftElbow, "left_elbow", 5, Side::kLeft, 0.075},
+    {kLeftWrist, "left_wrist", 6, Side::kLeft, 0.06},
+    {kLeftHand, "left_hand", 7, Side::kLeft, 0.11},
+    {kRightShoulder, "right_shoulder", 2, Side::kRight, 0.11},
+    {kRightElbow, "right_elbow", 9, Side::kRight, 0.075},
+    {kRightWrist, "right_wrist", 10, Side::kRight, 0.06},
+    {kRightHand, "right_hand", 11, Side::kRight, 0.11},
+    {kLeftHip, "left_hip", 0, Side::kLeft, 0.13},
+    {kLeftKnee, "left_knee", 13, Side::kLeft, 0.09},
+    {kLeftAnkle, "left_ankle", 14, Side::kLeft, 0.07},
+    {kLeftFoot, "left_foot", 15, Side::kLeft, 0.09},
+    {kRightHip, "right_hip", 0, Side::kRight, 0.13},
+    {kRightKnee, "right_knee", 17, Side::kRight, 0.09},
+    {kRightAnkle, "right_ankle", 18, Side::kRight, 0.07},
+    {kRightFoot, "right_foot", 19, Side::kRight, 0.09},
+}};
+
+/// A chain of joints out of the body's: each is the next one's parent.
+constexpr std::array<JointDef, 3> chain(JointId root, JointId middle, JointId end) {
+  std::array<JointDef, 3> out = {kBodyJoints[static_cast<std::size_t>(root)], kBodyJoints[static_cast<std::size_t>(middle)],
+                                 kBodyJoints[static_cast<std::size_t>(end)]};
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].parent = static_cast<std::int8_t>(static_cast<int>(i) - 1);
+  return out;
+}
+constexpr auto kRightArmJoints = chain(kRightShoulder, kRightElbow, kRightHand);
+constexpr auto kLeftArmJoints = chain(kLeftShoulder, kLeftElbow, kLeftHand);
+
+/// Parents come first, and a name stands where its id says.
+constexpr bool in_order() {
+  for (std::size_t i = 0; i < kJointIds; ++i)
+    if (static_cast<std::size_t>(kBodyJoints[i].id) != i || kBodyJoints[i].parent >= static_cast<int>(i)) return false;
+  return true;
+}
+static_assert(in_order());
+
+}  // namespace
+
+constinit const Skeleton kBody = {"body", kBodyJoints};
+constinit const Skeleton kRightArm = {"right_arm", kRightArmJoints};
+constinit const Skeleton kLeftArm = {"left_arm", kLeftArmJoints};
+
+std::optional<std::size_t> Skeleton::index_of(JointId id) const {
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    if (joints[i].id == id) return i;
+  return std::nullopt;
+}
+
+const Skeleton* skeleton_named(std::string_view name) {
+  for (const Skeleton* skeleton : {&kBody, &kRightArm, &kLeftArm})
+    if (skeleton->name == name) return skeleton;
+  return nullptr;
+}
+
+std::optional<JointId> joint_named(std::string_view name) {
+  const auto found = std::find_if(kBodyJoints.begin(), kBodyJoints.end(), [&](const JointDef& j) { return j.name == name; });
+  if (found == kBodyJoints.end()) return std::nullopt;
+  return found->id;
+}
+
+std::string_view name_of(JointId id) { return kBodyJoints[static_cast<std::size_t>(id)].name; }
+
+}  // namespace duo
