@@ -1,0 +1,19 @@
+#include "stages/depth_to_space16/depth_to_space16.h"
+
+#include <vector>
+
+#include "tests/agree.h"
+
+namespace duo {
+namespace {
+
+// By hand: two pixels of eight channels become two rows of four pixels of two.
+TEST(DepthToSpace16, HandWorked) {
+  std::vector<std::int16_t> x(16), data(16);
+  for (int i = 0; i < 16; ++i) x[i] = static_cast<std::int16_t>(i);
+  ref::depth_to_space16({x.data(), {2, 1}, 8}, {data.data(), {4, 2}, 2});
+  EXPECT_EQ(data, (std::vector<std::int16_t>{0, 1, 2, 3, 8, 9, 10, 11, 4, 5, 6, 7, 12, 13, 14, 15}));
+}
+
+}  // namespace
+}  // namespace duo

@@ -1,0 +1,62 @@
+#include "stages/depthwise16/depthwise16.h"
+
+#include <vector>
+
+#include "tests/agree.h"
+
+namespace duo {
+namespace {
+
+// Two channels: the first has the weights 1 .. 9, the second the middle one alone.
+struct TwoChannels {
+  std::vector<std::int16_t> weights = std::vector<std::int16_t>(18), x = std::vector<std::int16_t>(32);
+  std::vector<std::int32_t> bias = {0, 4};
+  std::vector<std::uint8_t> shift = {0, 3};
+  TwoChannels() {
+    for (int i = 0; i < 9; ++i) weights[2 * i] = static_cast<std::int16_t>(i + 1);
+    weights[2 * 4 + 1] = 8;
+    for (int i = 0; i < 16; ++i) x[2 * i] = x[2 * i + 1] = static_cast<std::int16_t>(i);  // rows 0 1 2 3, 4 5 6 7, ...
+  }
+  Depthwise16 layer(int stride, int pad) const { return {2, 3, stride, pad, pad, weights, bias, shift, {}}; }
+};
+
+// By hand: top left with a border: 5*0 + 6*1 + 8*4 + 9*5 = 83; (1, 1): 1*0+2*1+3*2 + 4*4+5*5+6*6 + 7*8+8*9+9*10 = 303.
+// The second channel: (8 * 6 + 4) >> 3 = 6 at (1, 2).
+TEST(Depthwise16, HandWorked) {
+  const TwoChannels made;
+  std::vector<std::int16_t> y(32);
+  const Tensor16 out{y.data(), {4, 4}, 2};
+  ref::depthwise16(made.layer(1, 1), {made.x.data(), {4, 4}, 2}, out);
+  EXPECT_EQ(out.pixel(0, 0)[0], 83);
+  EXPECT_EQ(out.pixel(1, 1)[0], 303);
+  EXPECT_EQ(out.pixel(1, 2)[1], 6);
+}
+
+// By hand, stride 2: without a border before the first, (0, 0) is what (1, 1) was above, and (1, 1) lies at (3, 3):
+// 1*10+2*11 + 4*14+5*15 = 163; with a border (1, 1) of the result is again that around (2, 2).
+TEST(Depthwise16, StrideTwoAndBothBorders) {
+  const TwoChannels made;
+  std::vector<std::int16_t> y(8);
+  const Tensor16 out{y.data(), {2, 2}, 2};
+  ref::depthwise16(made.layer(2, 0), {made.x.data(), {4, 4}, 2}, out);
+  EXPECT_EQ(out.pixel(0, 0)[0], 303);
+  EXPECT_EQ(out.pixel(1, 1)[0], 163);
+  ref::depthwise16(made.layer(2, 1), {made.x.data(), {4, 4}, 2}, out);
+  EXPECT_EQ(out.pixel(0, 0)[0], 83);
+  EXPECT_EQ(out.pixel(1, 1)[1], 10);
+}
+
+// By hand: two weights of full size at values of full size fit, three do not.
+TEST(Depthwise16, SumsFit) {
+  std::vector<std::int16_t> w(9);
+  const std::int32_t bias[] = {0};
+  const std::uint8_t shift[] = {0};
+  w[0] = w[8] = 32767;
+  EXPECT_TRUE(sums_fit(Depthwise16{1, 3, 1, 1, 1, w, bias, shift, {}}, {}));
+  w[4] = -32767;
+  EXPECT_FALSE(sums_fit(Depthwise16{1, 3, 1, 1, 1, w, bias, shift, {}}, {}));
+  EXPECT_TRUE(sums_fit(Depthwise16{1, 3, 1, 1, 1, w, bias, shift, {}}, {0, 32767}));
+}
+
+}  // namespace
+}  // namespace duo

@@ -1,0 +1,46 @@
+// The 1x1 convolution and the fully connected layer of a network in 16-bit integers.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/pool.h"
+#include "core/tensor.h"
+
+namespace duo {
+
+/// So many inputs are summed before a sum is folded into the total.
+inline constexpr int kMatmulChunk = 128;
+
+/// What a 1x1 convolution has learnt; the memory is the network's.
+struct Matmul16 {
+  int inputs = 0, outputs = 0;
+  std::span<const std::int16_t> weights;  // outputs x inputs, those of an output side by side; none is -32768
+  std::span<const std::int32_t> bias;     // one an output; holds the half of 2^shift that rounds
+  std::span<const std::uint8_t> shift;    // one an output, 0 .. 31
+  int fold = 0;                           // 0 .. 15; 0 where there is one chunk
+  Range16 range;
+};
+
+/// Whether no sum leaves 32 bits whatever the inputs are within `x`; the precondition of the stage.
+bool sums_fit(const Matmul16& layer, Range16 x);
+
+// For each pixel p and output n: total = sum over chunks of (sum over the chunk's 128 inputs k of x[p][k] w[n][k] + half) >>
+// fold, with half = 2^fold / 2, rounded down; the last chunk is what is left. y[p][n] = range.clamp((total + bias[n]) >>
+// shift[n]).
+//
+// Shape    x any picture of `inputs` channels, y as many pixels of `outputs` channels; a fully connected layer is one pixel
+// Units    powers of two: a shift is all that lies between the steps of x, w and y
+// Threads  pixels and outputs are independent
+// Exact    ref, simd and vk agree bit for bit: a chunk's sum and total + bias fit 32 bits (sums_fit), what lies between may
+// wrap, so that
+//          any order of adding is right; shifts are arithmetic
+// Source   Jacob et al., "Quantization and training of neural networks for efficient integer-arithmetic-only inference", 2018;
+// here with
+//          16 bits and shifts instead of 8 bits and multipliers, and sums of more than 128 terms folded, which leaves weights
+//          their bits
+namespace ref {
+void matmul16(const Matmul16& layer, ConstTensor16 x, Tensor16 y);
+}
+
+}  // namespace duo
