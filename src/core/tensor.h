@@ -48,9 +48,10 @@ struct Range16 {
   std::int16_t clamp(std::int32_t value) const {
     return static_cast<std::int16_t>(value < low ? low : value > high ? high : value);
   }
-  /// The largest and the smallest product of a weight with a value of this range.
-  std::int64_t most(std::int64_t weight) const { return weight * (weight > 0 ? high : low); }
-  std::int64_t least(std::int64_t weight) const { return weight * (weight > 0 ? low : high); }
+  /// Bounds of the sum of products of weights with values of this range: the weights above 0 sum to `positive`, those below to
+  /// `negative`.
+  std::int64_t least(std::int64_t positive, std::int64_t negative) const { return positive * low + negative * high; }
+  std::int64_t most(std::int64_t positive, std::int64_t negative) const { return positive * high + negative * low; }
 };
 
 }  // namespace duo

@@ -7,11 +7,12 @@ namespace duo {
 
 bool sums_fit(const ConvFirst16& layer, Range16 x) {
   for (int n = 0; n < layer.outputs; ++n) {
-    std::int64_t least = layer.bias[n], most = layer.bias[n];
+    std::int64_t positive = 0, negative = 0;
     for (int i = 0; i < kFirstTaps; ++i) {
-      least += x.least(layer.weights[n * kFirstTaps + i]);
-      most += x.most(layer.weights[n * kFirstTaps + i]);
+      const std::int64_t w = layer.weights[n * kFirstTaps + i];
+      (w > 0 ? positive : negative) += w;
     }
+    const std::int64_t least = layer.bias[n] + x.least(positive, negative), most = layer.bias[n] + x.most(positive, negative);
     if (least < std::numeric_limits<std::int32_t>::min() || most > std::numeric_limits<std::int32_t>::max()) return false;
   }
   return true;

@@ -8,11 +8,12 @@ namespace duo {
 bool sums_fit(const Depthwise16& layer, Range16 x) {
   const int taps = layer.window * layer.window;
   for (int c = 0; c < layer.channels; ++c) {
-    std::int64_t least = layer.bias[c], most = layer.bias[c];
+    std::int64_t positive = 0, negative = 0;
     for (int i = 0; i < taps; ++i) {
-      least += x.least(layer.weights[i * layer.channels + c]);
-      most += x.most(layer.weights[i * layer.channels + c]);
+      const std::int64_t w = layer.weights[i * layer.channels + c];
+      (w > 0 ? positive : negative) += w;
     }
+    const std::int64_t least = layer.bias[c] + x.least(positive, negative), most = layer.bias[c] + x.most(positive, negative);
     if (least < std::numeric_limits<std::int32_t>::min() || most > std::numeric_limits<std::int32_t>::max()) return false;
   }
   return true;

@@ -25,20 +25,18 @@ struct Matmul16 {
 /// Whether no sum leaves 32 bits whatever the inputs are within `x`; the precondition of the stage.
 bool sums_fit(const Matmul16& layer, Range16 x);
 
-// For each pixel p and output n: total = sum over chunks of (sum over the chunk's 128 inputs k of x[p][k] w[n][k] + half) >>
-// fold, with half = 2^fold / 2, rounded down; the last chunk is what is left. y[p][n] = range.clamp((total + bias[n]) >>
-// shift[n]).
+// For each pixel p and output n, with half = 2^fold / 2 rounded down:
+// total = sum over chunks of (sum over the chunk's 128 inputs k of x[p][k] w[n][k] + half) >> fold; the last chunk is the rest;
+// y[p][n] = range.clamp((total + bias[n]) >> shift[n]).
 //
-// Shape    x any picture of `inputs` channels, y as many pixels of `outputs` channels; a fully connected layer is one pixel
+// Shape    x any picture of `inputs` channels, y as many pixels of `outputs` channels; fully connected is one pixel
 // Units    powers of two: a shift is all that lies between the steps of x, w and y
 // Threads  pixels and outputs are independent
 // Exact    ref, simd and vk agree bit for bit: a chunk's sum and total + bias fit 32 bits (sums_fit), what lies between may
-// wrap, so that
-//          any order of adding is right; shifts are arithmetic
-// Source   Jacob et al., "Quantization and training of neural networks for efficient integer-arithmetic-only inference", 2018;
-// here with
-//          16 bits and shifts instead of 8 bits and multipliers, and sums of more than 128 terms folded, which leaves weights
-//          their bits
+//          wrap, so that any order of adding is right; shifts are arithmetic
+// Source   Jacob et al., "Quantization and training of neural networks for efficient integer-arithmetic-only inference",
+//          2018; here 16 bits and shifts instead of 8 bits and multipliers, and sums of more than 128 terms folded, which
+//          leaves weights their bits
 namespace ref {
 void matmul16(const Matmul16& layer, ConstTensor16 x, Tensor16 y);
 }

@@ -19,11 +19,12 @@ bool sums_fit(const Matmul16& layer, Range16 x) {
     const std::int16_t* w = layer.weights.data() + static_cast<std::ptrdiff_t>(n) * layer.inputs;
     std::int64_t least_total = layer.bias[n], most_total = layer.bias[n];
     for (int begin = 0; begin < layer.inputs; begin += kMatmulChunk) {
-      std::int64_t least = half, most = half;
+      std::int32_t positive = 0, negative = 0;  // 128 weights of 16 bits
       for (int k = begin; k < std::min(begin + kMatmulChunk, layer.inputs); ++k) {
-        least += x.least(w[k]);
-        most += x.most(w[k]);
+        positive += std::max<std::int32_t>(w[k], 0);
+        negative += std::min<std::int32_t>(w[k], 0);
       }
+      const std::int64_t least = half + x.least(positive, negative), most = half + x.most(positive, negative);
       if (!fits_int32(least, most)) return false;
       least_total += least >> layer.fold;
       most_total += most >> layer.fold;

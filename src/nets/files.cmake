@@ -1,0 +1,6 @@
+# Explicit names, no glob: what is not listed is not built.
+set(dir ${PROJECT_SOURCE_DIR}/src/nets)
+target_sources(duoptic PRIVATE ${dir}/net_file.cpp ${dir}/net_check.cpp
+  ${dir}/memory_plan.cpp ${dir}/net_run.cpp)
+duoptic_test(nets/net_file ${dir}/net_file_test.cpp)
+duoptic_test(nets/models ${dir}/models_test.cpp)

@@ -1,0 +1,40 @@
+// A network with the memory that it runs in.
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "core/pool.h"
+#include "nets/memory_plan.h"
+#include "nets/net.h"
+
+namespace duo {
+
+/// Fills the input, runs, reads the outputs; nothing is allocated after make. The network must outlive it.
+///
+/// Exact  plain loops and the processor's vectors agree bit for bit, with any number of threads
+class NetRun {
+ public:
+  enum class Loops { kPlain, kVectors };
+  NetRun(const Net& net, Loops loops);
+  ~NetRun();
+  NetRun(NetRun&&) noexcept;
+
+  const Net& net() const { return *net_; }
+  /// To be filled anew for each run: its memory is used for other tensors, too.
+  Tensor16 input() { return tensor(0); }
+  void run(Pool& pool);
+  /// A tensor that is an output keeps its values until the next run; others are overwritten on the way.
+  Tensor16 tensor(int index);
+  std::size_t memory_bytes() const;
+
+ private:
+  struct Prepared;
+  const Net* net_;
+  Loops loops_;
+  MemoryPlan plan_;
+  Image<std::int16_t> memory_;  // one row
+  std::unique_ptr<Prepared> prepared_;
+};
+
+}  // namespace duo
