@@ -1,6 +1,7 @@
 // The 1x1 convolution and the fully connected layer of a network in 16-bit integers.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -14,13 +15,23 @@ inline constexpr int kMatmulChunk = 128;
 
 /// What a 1x1 convolution has learnt; the memory is the network's.
 struct Matmul16 {
-  int inputs = 0, outputs = 0;
+  int inputs = 0, outputs = 0;            // inputs even: lanes take them in pairs
   std::span<const std::int16_t> weights;  // outputs x inputs, those of an output side by side; none is -32768
   std::span<const std::int32_t> bias;     // one an output; holds the half of 2^shift that rounds
   std::span<const std::uint8_t> shift;    // one an output, 0 .. 31
   int fold = 0;                           // 0 .. 15; 0 where there is one chunk
   Range16 range;
+  std::span<const std::int32_t> packed{};  // what pack() made of the above; simd and vk read only this and the range
 };
+
+/// Outputs in a block of a packed layer.
+inline constexpr int kMatmulBlock = 16;
+/// Words of a packed block, and of all.
+std::size_t packed_block(const Matmul16& layer);
+std::size_t packed_words(const Matmul16& layer);
+/// The layer in the order of lanes: a block holds 16 biases, 16 shifts and, for each pair of inputs, 16 pairs of weights, the
+/// even input's in the low half of a word. What the last block lacks is 0.
+void pack(const Matmul16& layer, std::span<std::int32_t> packed);
 
 /// Whether no sum leaves 32 bits whatever the inputs are within `x`; the precondition of the stage.
 bool sums_fit(const Matmul16& layer, Range16 x);
@@ -39,6 +50,9 @@ bool sums_fit(const Matmul16& layer, Range16 x);
 //          leaves weights their bits
 namespace ref {
 void matmul16(const Matmul16& layer, ConstTensor16 x, Tensor16 y);
+}
+namespace simd {
+void matmul16(Pool& pool, const Matmul16& layer, ConstTensor16 x, Tensor16 y);
 }
 
 }  // namespace duo

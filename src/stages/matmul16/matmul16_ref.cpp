@@ -34,6 +34,27 @@ bool sums_fit(const Matmul16& layer, Range16 x) {
   return true;
 }
 
+std::size_t packed_block(const Matmul16& layer) { return kMatmulBlock * (2 + layer.inputs / std::size_t{2}); }
+
+std::size_t packed_words(const Matmul16& layer) {
+  return packed_block(layer) * ((layer.outputs + kMatmulBlock - 1) / kMatmulBlock);
+}
+
+void pack(const Matmul16& layer, std::span<std::int32_t> packed) {
+  DUO_CHECK(layer.inputs % 2 == 0 && packed.size() == packed_words(layer));
+  std::fill(packed.begin(), packed.end(), 0);
+  for (int n = 0; n < layer.outputs; ++n) {
+    const std::int16_t* w = layer.weights.data() + static_cast<std::ptrdiff_t>(n) * layer.inputs;
+    std::int32_t* word = packed.data() + n / kMatmulBlock * packed_block(layer) + n % kMatmulBlock;
+    word[0] = layer.bias[n];
+    word[kMatmulBlock] = layer.shift[n];
+    for (int k = 0; k < layer.inputs; k += 2) {
+      const std::uint32_t low = static_cast<std::uint16_t>(w[k]), high = static_cast<std::uint16_t>(w[k + 1]);
+      word[(2 + k / 2) * kMatmulBlock] = static_cast<std::int32_t>(low | high << 16);
+    }
+  }
+}
+
 namespace ref {
 
 void matmul16(const Matmul16& layer, ConstTensor16 x, Tensor16 y) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "tests/agree.h"
+#include "tests/layers16.h"
 
 namespace duo {
 namespace {
@@ -45,6 +46,63 @@ TEST(Matmul16, SumsFit) {
   EXPECT_TRUE(sums_fit({3, 1, w, bias, shift, 0, {}}, {0, 32767}));
   bias[0] = 131070;
   EXPECT_FALSE(sums_fit({2, 1, {w, 2}, bias, shift, 0, {}}, {}));
+}
+
+// By hand: 17 outputs of 4 inputs are two blocks of 2 + 2 rows of 16 words; output 16 is the second block's first.
+TEST(Matmul16, Packs) {
+  std::vector<std::int16_t> w(17 * 4);
+  w[4 * 3] = -2, w[4 * 3 + 1] = 5, w[4 * 16 + 2] = 7;
+  std::vector<std::int32_t> bias(17);
+  bias[3] = 30;
+  std::vector<std::uint8_t> shift(17);
+  shift[16] = 9;
+  const Matmul16 layer{4, 17, w, bias, shift, 0, {}};
+  ASSERT_EQ(packed_words(layer), 2u * 4 * 16);
+  std::vector<std::int32_t> packed(packed_words(layer), -1);
+  pack(layer, packed);
+  EXPECT_EQ(packed[3], 30);
+  EXPECT_EQ(packed[2 * 16 + 3], 0x5FFFE);
+  EXPECT_EQ(packed[64 + 16], 9);
+  EXPECT_EQ(packed[64 + 3 * 16], 7);
+  EXPECT_EQ(packed[64 + 3 * 16 + 1], 0) << "what the block lacks";
+}
+
+TEST(Matmul16, SimdAgrees) {
+  std::mt19937 rng(1);
+  Pool one(1), two(2);
+  for (const int inputs : {2, 24, 126, 128, 130, 386})
+    for (const int outputs : {1, 7, 8, 15, 16, 17, 33, 56, 195}) {
+      const test::RandomMatmul16 random(inputs, outputs, rng);
+      ASSERT_TRUE(sums_fit(random.layer, {}));
+      for (const int pixels : {1, 2, 3, 7, 8, 13, 67}) {
+        const auto x = test::values16(static_cast<std::size_t>(pixels) * inputs, rng);
+        std::vector<std::int16_t> want(static_cast<std::size_t>(pixels) * outputs), got(want.size());
+        ref::matmul16(random.layer, {x.data(), {pixels, 1}, inputs}, {want.data(), {pixels, 1}, outputs});
+        test::each_target([&](const std::string& target) {
+          for (Pool* pool : {&one, &two}) {
+            std::fill(got.begin(), got.end(), std::int16_t{-1});
+            simd::matmul16(*pool, random.layer, {x.data(), {pixels, 1}, inputs}, {got.data(), {pixels, 1}, outputs});
+            test::expect_same16({want.data(), {pixels, 1}, outputs}, {got.data(), {pixels, 1}, outputs},
+                                "matmul16 simd " + target);
+          }
+        });
+        if (HasFailure()) return;
+      }
+    }
+}
+
+// Large enough for the threads to share pixels, or outputs where there are few pixels.
+TEST(Matmul16, ThreadsAgree) {
+  std::mt19937 rng(2);
+  Pool one(1), three(3);
+  for (const int pixels : {4, 333}) {
+    const test::RandomMatmul16 random(512, 300, rng);
+    const auto x = test::values16(static_cast<std::size_t>(pixels) * 512, rng);
+    std::vector<std::int16_t> want(static_cast<std::size_t>(pixels) * 300), got(want.size());
+    simd::matmul16(one, random.layer, {x.data(), {pixels, 1}, 512}, {want.data(), {pixels, 1}, 300});
+    simd::matmul16(three, random.layer, {x.data(), {pixels, 1}, 512}, {got.data(), {pixels, 1}, 300});
+    EXPECT_EQ(want, got) << pixels << " pixels";
+  }
 }
 
 }  // namespace
