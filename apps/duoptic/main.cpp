@@ -17,6 +17,7 @@ Exit exit_of(const Error& error) {
     case ErrorCode::kWriteFailed:
       return Exit::kOutput;
     case ErrorCode::kDeviceLost:
+    case ErrorCode::kExhausted:
       return Exit::kUnexpected;
     case ErrorCode::kBadInput:
     case ErrorCode::kNotFound:

@@ -10,11 +10,12 @@
 namespace duo {
 
 enum class ErrorCode : std::uint8_t {
-  kBadInput,      // what the user gave cannot be used (file, picture, rig, option)
-  kNotFound,      // a file or device is not there
-  kUnsupported,   // this build or this machine cannot do it
-  kWriteFailed,   // the output could not be written whole
-  kDeviceLost,    // a camera or GPU went away
+  kBadInput,     // what the user gave cannot be used (file, picture, rig, option)
+  kNotFound,     // a file or device is not there
+  kUnsupported,  // this build or this machine cannot do it
+  kWriteFailed,  // the output could not be written whole
+  kDeviceLost,   // a camera or GPU went away
+  kExhausted,    // the machine has no more memory, threads or open files
 };
 
 struct Error {
@@ -65,10 +66,9 @@ class [[nodiscard]] Result<void> {
 #define DUO_JOIN(a, b) DUO_JOIN_INNER(a, b)
 
 /// Runs `expression` (a Result<void>) and returns its error from the calling function, if it has one.
-#define DUO_TRY(expression)                                     \
-  do {                                                          \
-    if (auto duo_result = (expression); !duo_result.has_value()) \
-      return duo_result.error();                                \
+#define DUO_TRY(expression)                                                                 \
+  do {                                                                                      \
+    if (auto duo_result = (expression); !duo_result.has_value()) return duo_result.error(); \
   } while (false)
 
 /// Declares `variable` with the value of `expression` (a Result<T>), or returns its error.
