@@ -26,14 +26,14 @@ duo::Setup setup_for(const SyntheticPair& scene) {
   setup.matcher = "pyramid";
   setup.preset = "thesis";
   setup.max_disparity = 32;
-  setup.wants = must(make_tracker("arm", "thesis"))->wants();
+  setup.wants = must(make_tracker("thesis"))->wants();
   return setup;
 }
 
 /// An engine and the thesis's tracker behind it.
 struct Line {
   std::unique_ptr<Engine> engine;
-  std::unique_ptr<Tracker> tracker = must(make_tracker("arm", "thesis"));
+  std::unique_ptr<Tracker> tracker = must(make_tracker("thesis"));
 
   Line(std::unique_ptr<Engine> with, const duo::Setup& setup) : engine(std::move(with)) {
     const auto ready = engine->prepare(setup);
@@ -47,42 +47,49 @@ struct Line {
 };
 
 /// Three places of the room that have colour and depth.
-ArmSelection places(const SyntheticPair& scene) {
+Selection places(const SyntheticPair& scene) {
   Line line(make_simd_engine(1), setup_for(scene));
   const Frame& frame = line.frame(scene.pair);
-  ArmSelection out;
-  std::size_t found = 0;
-  for (int y = 40; y < 144 && found < out.clicks.size(); y += 30)
-    for (int x = 60; x < 192 && found < out.clicks.size(); x += 30) {
-      const ArmSelection::Click at{static_cast<double>(x), static_cast<double>(y)};
-      if (line.tracker->select(frame, {ArmSelection{{at, at, at}}})) out.clicks[found++] = at;
+  Selection out{&kRightArm, {}};
+  for (int y = 40; y < 144; y += 30)
+    for (int x = 60; x < 192 && out.clicks.size() < kRightArm.joints.size(); x += 30) {
+      Selection all{&kRightArm, {}};
+      for (const JointDef& joint : kRightArm.joints)
+        all.clicks.push_back({joint.id, static_cast<double>(x), static_cast<double>(y)});
+      if (line.tracker->select(frame, {&all, 1})) out.clicks.push_back(all.clicks[out.clicks.size()]);
     }
-  EXPECT_EQ(found, out.clicks.size());
+  EXPECT_EQ(out.clicks.size(), kRightArm.joints.size());
   return out;
 }
 
-void expect_same_joints(const ArmPose& want, const ArmPose& got, const std::string& who) {
-  for (std::size_t i = 0; i < kArmJoints; ++i) {
-    EXPECT_EQ(want.joints[i].state, got.joints[i].state) << who << ", " << kJointNames[i];
+void expect_same_joints(const Person& want, const Person& got, const std::string& who) {
+  ASSERT_EQ(want.skeleton, got.skeleton);
+  for (std::size_t i = 0; i < want.count(); ++i) {
+    EXPECT_EQ(want.joints[i].state, got.joints[i].state) << who << ", " << want.skeleton->joints[i].name;
     // Points may differ in their last bits.
-    EXPECT_LT(norm(want.joints[i].p_in_rig_m - got.joints[i].p_in_rig_m), 0.003) << who << ", " << kJointNames[i];
+    EXPECT_LT(norm(want.joints[i].p_in_rig_m - got.joints[i].p_in_rig_m), 0.003)
+        << who << ", " << want.skeleton->joints[i].name;
   }
+}
+
+void expect_state(const Person& person, JointState state, const std::string& how = "") {
+  for (std::size_t i = 0; i < person.count(); ++i) EXPECT_EQ(person.joints[i].state, state) << how;
 }
 
 TEST(VulkanTracking, GivesTheCpusJoints) {
   const SyntheticPair scene = room();
-  const ArmSelection clicks = places(scene);
+  const Selection clicks = places(scene);
   OwnDevice device;
   Line vulkan(device.engine(), setup_for(scene)), cpu(make_simd_engine(1), setup_for(scene));
   const Frame& first = vulkan.frame(scene.pair);
   ASSERT_NE(first.observer, nullptr);
   EXPECT_TRUE(first.left.empty() && first.color.empty() && first.disparity.d_q4.empty()) << "it stays on the device";
-  must(vulkan.tracker->select(first, {clicks}));
-  must(cpu.tracker->select(cpu.frame(scene.pair), {clicks}));
+  must(vulkan.tracker->select(first, {&clicks, 1}));
+  must(cpu.tracker->select(cpu.frame(scene.pair), {&clicks, 1}));
   for (int i = 0; i < 3; ++i) {
-    const ArmPose want = cpu.tracker->track(cpu.frame(scene.pair))[0];
+    const Person want = cpu.tracker->track(cpu.frame(scene.pair))[0];
     expect_same_joints(want, vulkan.tracker->track(vulkan.frame(scene.pair))[0], "frame " + std::to_string(i));
-    EXPECT_EQ(want[Joint::kHand].state, JointState::kSeen) << "the scene itself";
+    EXPECT_EQ(want.find(JointId::kRightHand)->state, JointState::kSeen) << "the scene itself";
   }
   EXPECT_EQ(vulkan.engine->take_event(), "");
 }
@@ -96,27 +103,26 @@ TEST(VulkanTracking, LooksAtFramesThatStay) {
   OwnDevice device;
   Line vulkan(device.engine(), setup_for(scene));
   const Frame& first = vulkan.frame(scene.pair);
-  must(vulkan.tracker->select(first, {places(scene)}));
+  const Selection clicks = places(scene);
+  must(vulkan.tracker->select(first, {&clicks, 1}));
   vulkan.engine->submit(scene.pair);
   vulkan.engine->submit(dark);
   const Frame& second = vulkan.engine->collect();
   vulkan.engine->submit(dark);
   (void)vulkan.engine->collect();
   vulkan.engine->submit(dark);
-  const ArmPose pose = vulkan.tracker->track(second)[0];
-  for (const Keypoint& joint : pose.joints) EXPECT_EQ(joint.state, JointState::kSeen);
-  const ArmPose none = vulkan.tracker->track(vulkan.engine->collect())[0];
-  for (const Keypoint& joint : none.joints) EXPECT_EQ(joint.state, JointState::kInferred);
+  expect_state(vulkan.tracker->track(second)[0], JointState::kSeen);
+  expect_state(vulkan.tracker->track(vulkan.engine->collect())[0], JointState::kInferred);
   vulkan.engine->collect();
 }
 
 TEST(VulkanTracking, LeavesTheCpuFree) {
   const SyntheticPair scene = room();
-  const ArmSelection clicks = places(scene);
+  const Selection clicks = places(scene);
   OwnDevice device(vk::Validation::kOff);  // the layer allocates
   watch(device.calls());
   Line vulkan(device.engine(), setup_for(scene));
-  must(vulkan.tracker->select(vulkan.frame(scene.pair), {clicks}));
+  must(vulkan.tracker->select(vulkan.frame(scene.pair), {&clicks, 1}));
   vulkan.tracker->track(vulkan.frame(scene.pair));  // the stored points go up
   std::int64_t least_ns = 1 << 30;
   for (int i = 0; i < 4; ++i) {
@@ -135,23 +141,23 @@ TEST(VulkanTracking, LeavesTheCpuFree) {
 
 void expect_cpu_goes_on(void (*injure)(), const char* how) {
   const SyntheticPair scene = room();
-  const ArmSelection clicks = places(scene);
+  const Selection clicks = places(scene);
   OwnDevice device;
   watch(device.calls());
   Line vulkan(device.engine(), setup_for(scene)), cpu(make_simd_engine(1), setup_for(scene));
-  must(vulkan.tracker->select(vulkan.frame(scene.pair), {clicks}));
-  must(cpu.tracker->select(cpu.frame(scene.pair), {clicks}));
+  must(vulkan.tracker->select(vulkan.frame(scene.pair), {&clicks, 1}));
+  must(cpu.tracker->select(cpu.frame(scene.pair), {&clicks, 1}));
   expect_same_joints(cpu.tracker->track(cpu.frame(scene.pair))[0], vulkan.tracker->track(vulkan.frame(scene.pair))[0], how);
   const Frame& unseen = vulkan.frame(scene.pair);
   injure();
-  for (const Keypoint& joint : vulkan.tracker->track(unseen)[0].joints) EXPECT_EQ(joint.state, JointState::kInferred) << how;
+  expect_state(vulkan.tracker->track(unseen)[0], JointState::kInferred, how);
   EXPECT_FALSE(unseen.observer->maps()) << how;
   const Frame& on_cpu = vulkan.frame(scene.pair);
   EXPECT_EQ(on_cpu.observer, nullptr);
   expect_same_joints(cpu.tracker->track(cpu.frame(scene.pair))[0], vulkan.tracker->track(on_cpu)[0], how);
   EXPECT_NE(vulkan.engine->take_event().find("the CPU goes on"), std::string::npos) << how;
   EXPECT_STREQ(vulkan.engine->name(), "simd");
-  must(vulkan.tracker->select(vulkan.frame(scene.pair), {clicks}));
+  must(vulkan.tracker->select(vulkan.frame(scene.pair), {&clicks, 1}));
   EXPECT_EQ(vulkan.engine->take_event(), "") << "told once";
 }
 
@@ -165,16 +171,16 @@ TEST(VulkanTracking, GoesOnWhenTheDeviceIsLostWhileItLooks) {
 TEST(VulkanTracking, LooksWhileTheNextFrameIsMade) {
   constexpr int kFrames = 8;
   const SyntheticPair scene = room();
-  const ArmSelection clicks = places(scene);
+  const Selection clicks = places(scene);
   OwnDevice device;
   Line vulkan(device.engine(), setup_for(scene)), cpu(make_simd_engine(1), setup_for(scene));
-  must(cpu.tracker->select(cpu.frame(scene.pair), {clicks}));
+  must(cpu.tracker->select(cpu.frame(scene.pair), {&clicks, 1}));
   const Frame* frame = &vulkan.frame(scene.pair);
-  must(vulkan.tracker->select(*frame, {clicks}));
+  must(vulkan.tracker->select(*frame, {&clicks, 1}));
   for (int i = 0; i < kFrames; ++i) {
     const Frame* next = nullptr;
     std::jthread maker([&] { next = &vulkan.frame(scene.pair); });
-    const ArmPose got = vulkan.tracker->track(*frame)[0];
+    const Person got = vulkan.tracker->track(*frame)[0];
     maker.join();
     expect_same_joints(cpu.tracker->track(cpu.frame(scene.pair))[0], got, "frame " + std::to_string(i));
     frame = next;

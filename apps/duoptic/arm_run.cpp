@@ -25,13 +25,8 @@ void ArmOptions::add_to(CLI::App& app) {
                  fmt::format("Searches 0 .. N-1 px; without it, as far as {} m needs, 256 at most", ArmRun::kNearest_m))
       ->type_name("N")
       ->check(CLI::Range(1, Engine::kMaxDisparity));
-  app.add_option("--tracker-preset", tracker_preset, "thesis: three blobs as in 2010; default: what survives hiding")
-      ->check(CLI::Validator(
-          [](std::string& name) {
-            const auto tracker = make_tracker("arm", name);
-            return tracker ? std::string() : tracker.error().what;
-          },
-          "default|thesis"))
+  app.add_option("--tracker", tracker, "arm: hand, elbow and shoulder, through hiding; thesis: three blobs as in 2010")
+      ->check(CLI::IsMember(tracker_names()))
       ->capture_default_str();
 }
 
@@ -49,13 +44,13 @@ Result<ArmRun> ArmRun::open(Input input, const ArmOptions& options, std::int64_t
                              input.names[0])};
   const Rig& rig = *setup.rig;
   setup.max_disparity = options.max_disparity > 0 ? options.max_disparity : disparity_at(kNearest_m, rig);
-  DUO_TRY_ASSIGN(run.tracker_, make_tracker("arm", options.tracker_preset));
+  DUO_TRY_ASSIGN(run.tracker_, make_tracker(options.tracker));
   setup.wants = run.tracker_->wants();
   if (options.all_maps) setup.wants.color = setup.wants.views = setup.wants.disparity = true;
   setup.many_at_once = options.in_bulk && !input.pairs->live();
   DUO_TRY(run.engine_->prepare(setup));
   const double frame_s = input.pairs->frame_s();
-  DUO_TRY(run.tracker_->prepare({rig, *run.engine_->rectified(), frame_s}));
+  DUO_TRY(run.tracker_->prepare({rig, *run.engine_->rectified(), frame_s, options.engine.threads, input.pairs->live()}));
 
   run.header_.sources = std::move(input.names);
   run.header_.engine = run.engine_->name();
@@ -63,7 +58,8 @@ Result<ArmRun> ArmRun::open(Input input, const ArmOptions& options, std::int64_t
   run.header_.matcher = options.engine.matcher;
   run.header_.matcher_preset = options.engine.preset;
   run.header_.tracker = run.tracker_->name();
-  run.header_.tracker_preset = options.tracker_preset;
+  const auto skeletons = run.tracker_->skeletons();
+  run.header_.skeletons.assign(skeletons.begin(), skeletons.end());
   run.header_.rectified = *run.engine_->rectified();
   run.header_.size = setup.size;
   run.header_.frame_s = frame_s;
@@ -81,19 +77,25 @@ Result<void> ArmRun::set(const std::vector<std::pair<std::string, double>>& para
   return {};
 }
 
-const std::vector<ArmPose>& ArmRun::track() {
-  const std::vector<ArmPose>* arms = nullptr;
-  tracker_ms_ = timed([&] { arms = &tracker_->track(frame()); }).wall_ms;
-  return *arms;
+Result<std::span<const Person>> ArmRun::select(std::span<const Selection> selections) {
+  Result<std::span<const Person>> people = std::span<const Person>();
+  tracker_ms_ = timed([&] { people = tracker_->select(frame(), selections); }).wall_ms;
+  return people;
 }
 
-TrackedFrame ArmRun::tracked(const std::vector<ArmPose>& arms) const {
+std::span<const Person> ArmRun::track() {
+  std::span<const Person> people;
+  tracker_ms_ = timed([&] { people = tracker_->track(frame()); }).wall_ms;
+  return people;
+}
+
+TrackedFrame ArmRun::tracked(std::span<const Person> people) const {
   const Pair& pair = frames_->last().pair;
   return {static_cast<std::int64_t>(pair.sequence),
           static_cast<double>(pair.left.t_ns - frames_->start_ns()) * 1e-9,
           pair.left,
           frame(),
-          arms,
+          people,
           {}};
 }
 

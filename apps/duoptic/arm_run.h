@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,7 +19,7 @@ namespace duo::app {
 
 struct ArmOptions {
   EngineOptions engine;
-  std::string tracker_preset = "default";
+  std::string tracker = "arm";
   int max_disparity = 0;  // 0: what something at kNearest_m has
   bool all_maps = false;  // frames are drawn or scored, not only tracked
   bool in_bulk = false;   // of files: as many frames a second as can be, rather than each soon; not for set()
@@ -26,7 +27,7 @@ struct ArmOptions {
   void add_to(CLI::App& app);
 };
 
-/// Pairs, frames and arms of a clip: next(), then select() or track(). The next frame is made while this one is tracked.
+/// Pairs, frames and persons of a clip: next(), then select() or track(). The next frame is made while this one is tracked.
 class ArmRun {
  public:
   static constexpr double kNearest_m = 0.5;
@@ -37,18 +38,20 @@ class ArmRun {
 
   Result<Next> next() { return frames_->next(); }
   const Frame& frame() const { return *frames_->last().frame; }
-  Result<void> select(const std::vector<ArmSelection>& arms) { return tracker_->select(frame(), arms); }
-  const std::vector<ArmPose>& track();
+  /// As Tracker::select() and track(): select() has looked at the frame.
+  Result<std::span<const Person>> select(std::span<const Selection> selections);
+  std::span<const Person> track();
   void reset() { tracker_->reset(); }
 
   /// Other parameters of the matcher, by name; the last frame is made anew, tracking goes on.
   Result<void> set(const std::vector<std::pair<std::string, double>>& parameters);
 
   const Rig& rig() const { return *setup_.rig; }
+  const Tracker& tracker() const { return *tracker_; }
   FrameAhead& frames() const { return *frames_; }
   const TrackHeader& header() const { return header_; }
   /// The last pair and its frame, as sinks take them.
-  TrackedFrame tracked(const std::vector<ArmPose>& arms) const;
+  TrackedFrame tracked(std::span<const Person> people) const;
   TrackTimes times() const { return {frames_->last().engine_ms, tracker_ms_}; }  // of the last frame
 
  private:

@@ -58,13 +58,15 @@ void add_stages(const Frame& frame, std::span<const StageTime> look, Run& run) {
 /// Errors  there is none
 Result<std::unique_ptr<Tracker>> tracker_on(const Frame& frame, const Engine& engine, const Rig& rig) {
   constexpr int kStep_px = 24;
-  DUO_TRY_ASSIGN(std::unique_ptr<Tracker> tracker, make_tracker("arm", "thesis"));
+  DUO_TRY_ASSIGN(std::unique_ptr<Tracker> tracker, make_tracker("thesis"));
   DUO_TRY(tracker->prepare({rig, *engine.rectified()}));
-  Result<void> selected = Error{ErrorCode::kBadInput, "bench the tracker: the picture is too small"};
+  Result<std::span<const Person>> selected = Error{ErrorCode::kBadInput, "bench the tracker: the picture is too small"};
   for (int y = rig.left.size.height / 3; y < rig.left.size.height; y += kStep_px)
     for (int x = rig.left.size.width / 3; x < rig.left.size.width; x += kStep_px) {
-      const ArmSelection::Click click{static_cast<double>(x), static_cast<double>(y)};
-      selected = tracker->select(frame, {ArmSelection{{click, click, click}}});
+      Selection arm{&kRightArm, {}};
+      for (const JointDef& joint : kRightArm.joints)
+        arm.clicks.push_back({joint.id, static_cast<double>(x), static_cast<double>(y)});
+      selected = tracker->select(frame, {&arm, 1});
       if (selected) return tracker;
     }
   return selected.error();

@@ -1,7 +1,9 @@
 #include "clip.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -25,23 +27,38 @@ JointTruth joint_of(const nlohmann::json& j) {
   return joint;
 }
 
-std::vector<ArmTruth> frames_of(const nlohmann::json& truth) {
-  const std::string arm = truth.at("meta").at("selected_arm").get<std::string>();
-  std::vector<ArmTruth> frames;
-  for (const auto& frame : truth.at("frames")) {
-    ArmTruth& joints = frames.emplace_back();
-    for (std::size_t j = 0; j < kArmJoints; ++j)
-      joints[j] = joint_of(frame.at("joints").at(fmt::format("{}_{}", arm, kJointNames[j])));
-  }
-  return frames;
+Side side_named(const std::string& name) { return name == "left" ? Side::kLeft : Side::kRight; }
+
+FrameTruth frame_of(const nlohmann::json& joints) {
+  FrameTruth truth;
+  for (const auto& [name, joint] : joints.items())
+    if (const auto id = joint_named(name)) truth[static_cast<std::size_t>(*id)] = joint_of(joint);
+  return truth;
+}
+
+Error cannot_evaluate(const std::string& name, const std::string& why) {
+  return {ErrorCode::kBadInput, fmt::format("cannot evaluate {}: {}", name, why)};
 }
 
 }  // namespace
 
-std::int64_t ClipTruth::first_visible() const {
+Result<void> ClipTruth::check(JointId joint) const {
   for (std::size_t i = 0; i < frames.size(); ++i)
-    if (frames[i][0].visible && frames[i][1].visible && frames[i][2].visible) return static_cast<std::int64_t>(i);
-  return -1;
+    if (!frames[i][static_cast<std::size_t>(joint)])
+      return cannot_evaluate(name, fmt::format("frame {} of its truth.json has no {}", i, name_of(joint)));
+  return {};
+}
+
+Result<std::int64_t> ClipTruth::first_visible(std::span<const JointId> joints) const {
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (std::all_of(joints.begin(), joints.end(), [&](JointId joint) {
+          const auto& truth = frames[i][static_cast<std::size_t>(joint)];
+          return truth && truth->visible;
+        }))
+      return static_cast<std::int64_t>(i);
+  std::vector<std::string_view> names;
+  for (const JointId joint : joints) names.push_back(name_of(joint));
+  return cannot_evaluate(name, fmt::format("no frame shows {} to both cameras", fmt::join(names, ", ")));
 }
 
 Result<ClipTruth> load_clip(const fs::path& folder) {
@@ -56,14 +73,11 @@ Result<ClipTruth> load_clip(const fs::path& folder) {
   try {
     const nlohmann::json truth = nlohmann::json::parse(file);
     clip.skew_ms = truth.at("meta").value("skew_ms", 0.0);
-    clip.frames = frames_of(truth);
+    clip.arm = side_named(truth.at("meta").at("selected_arm").get<std::string>());
+    for (const auto& frame : truth.at("frames")) clip.frames.push_back(frame_of(frame.at("joints")));
   } catch (const nlohmann::json::exception& error) {
     return Error{ErrorCode::kBadInput, fmt::format("cannot use {}: {}", path.string(), error.what())};
   }
-  if (clip.first_visible() < 0)
-    return Error{ErrorCode::kBadInput,
-                 fmt::format("cannot evaluate {}: no frame shows hand, elbow and shoulder of the selected arm to both cameras",
-                             folder.string())};
   return clip;
 }
 

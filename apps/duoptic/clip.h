@@ -3,13 +3,15 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "duoptic/frame.h"
 #include "duoptic/result.h"
 #include "duoptic/rig.h"
-#include "duoptic/tracker.h"
+#include "duoptic/skeleton.h"
 
 namespace duo::app {
 
@@ -18,18 +20,24 @@ struct JointTruth {
   double u_px = 0, v_px = 0;  // where it projects in the raw left picture, whether it is seen there or not
   bool visible = false;       // in both pictures, nothing in front of it
 };
-using ArmTruth = std::array<JointTruth, kArmJoints>;
+/// Of the joints that a frame's truth has; by JointId.
+using FrameTruth = std::array<std::optional<JointTruth>, kJointIds>;
 
-/// Of truth.json: meta.selected_arm ("left" or "right"), meta.skew_ms (0 where there is none), frames[i].joints.ARM_JOINT.{xyz,
-/// uv_left, vis_left, vis_right}.
+/// Of truth.json: meta.selected_arm ("left" or "right"), meta.skew_ms (0 where there is none), frames[i].joints.NAME.{xyz,
+/// uv_left, vis_left, vis_right}. Names that no skeleton has are passed over.
 struct ClipTruth {
   std::string name;
   Rig rig;
-  double skew_ms = 0;  // how much later the right pictures were taken
-  std::vector<ArmTruth> frames;
+  Side arm = Side::kRight;  // the arm that moves
+  double skew_ms = 0;       // how much later the right pictures were taken
+  std::vector<FrameTruth> frames;
 
-  /// The first frame in which all joints are visible; -1: none.
-  std::int64_t first_visible() const;
+  /// Errors  a frame lacks the joint
+  Result<void> check(JointId joint) const;
+  /// The first frame in which the cameras see all these joints.
+  ///
+  /// Errors  there is none
+  Result<std::int64_t> first_visible(std::span<const JointId> joints) const;
 };
 
 /// Reads calibration_truth.yml and truth.json.

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "command.h"
+#include "duoptic/paint.h"
 #include "duoptic/sink.h"
 #include "duoptic/synthetic.h"
 #include "eval_clip.h"
@@ -92,19 +93,18 @@ Result<void> track_person(const Options& options, const CLI::App& app) {
   }
   DUO_TRY_ASSIGN(const ClipTruth truth, load_clip(clip));
   std::vector<eval_clip::ClipScore> scores;
-  for (const char* preset : {"default", "thesis"}) {
+  for (const char* tracker : {"arm", "thesis"}) {
     ArmOptions arm;
     arm.engine = options.engine;
-    arm.tracker_preset = preset;
-    const std::string video = (std::filesystem::path(options.folder) / fmt::format("arm_{}.mp4", preset)).string();
-    DUO_TRY_ASSIGN(eval_clip::ClipScore score, eval_clip::track_clip(clip, truth, truth.rig, arm, 0, video));
+    arm.tracker = tracker;
+    const std::string video = (std::filesystem::path(options.folder) / fmt::format("{}.mp4", tracker)).string();
+    DUO_TRY_ASSIGN(eval_clip::ClipScore score, eval_clip::track_clip(clip, truth, truth.rig, arm, {}, 0, video));
     if (!score.note.empty()) say(app, "warning: " + score.note);
     scores.push_back(std::move(score));
   }
   fmt::print("\nThe arm against its exact joints, mm; the thesis's tracker of 2010 beside ours\n");
   eval_clip::print(scores);
-  fmt::print("\nLook at {0}/arm_default.mp4 (joints and bones, depth, arm region, hue), and how {0}/arm_thesis.mp4 loses it.\n",
-             options.folder);
+  fmt::print("\nLook at {0}/arm.mp4 (joints and bones, depth, body, hue), and how {0}/thesis.mp4 loses it.\n", options.folder);
   return {};
 }
 

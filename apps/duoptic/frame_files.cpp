@@ -1,5 +1,6 @@
 #include "frame_files.h"
 
+#include "duoptic/paint.h"
 #include "duoptic/sink.h"
 
 namespace duo::app {

@@ -1,4 +1,4 @@
-// The options that say where tracked arms go.
+// The options that say where tracked persons go.
 #pragma once
 
 #include <memory>
@@ -19,13 +19,13 @@ struct NamedSink {
 struct SinkOptions {
   std::string lines, video;
   std::vector<std::string> csv, bvh, osc, vmc;
-  std::string axes = "opencv", arm = "right";
+  std::string axes = "opencv";
 
   void add_to(CLI::App& app);
   /// All that were asked for; JSON lines last, on stdout without -o. `live`: none of them can slow the others or the tracker.
   ///
   /// Errors  those of the sinks; a sink made before leaves nothing
-  Result<std::vector<NamedSink>> make(TrackHeader header, bool live, const CLI::App& app) const;
+  Result<std::vector<NamedSink>> make(const TrackHeader& header, bool live, const CLI::App& app) const;
 };
 
 /// Each sink that dropped frames: ", 3 dropped by arm.mp4".

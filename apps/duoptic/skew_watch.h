@@ -1,10 +1,10 @@
 // What it costs that two cameras do not take their pictures at the same moment.
 #pragma once
 
-#include <array>
+#include <map>
 #include <optional>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "duoptic/sink.h"
 
@@ -31,7 +31,7 @@ class SkewWatch {
     bool valid = false;
   };
   double baseline_m_;
-  std::vector<std::array<Seen, kArmJoints>> before_;  // of each arm
+  std::map<std::pair<std::uint32_t, JointId>, Seen> before_;  // of each person's joints
   std::optional<double> warned_s_;
 };
 

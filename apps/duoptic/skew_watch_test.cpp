@@ -18,9 +18,12 @@ std::optional<std::string> told(SkewWatch& watch, double t_s, double x_m, double
   Picture picture;
   Frame frame;
   frame.skew_ns = static_cast<TimeNs>(skew_ms * 1e6);
-  std::vector<ArmPose> arms(1);
-  arms[0][Joint::kHand] = {.p_in_rig_m = {x_m, 0, 2}, .sigma_m = 0.02, .state = state};
-  return watch.see({0, t_s, picture, frame, arms, {}});
+  Person person;
+  person.id = 1;
+  person.skeleton = &kRightArm;
+  person.joints[*kRightArm.index_of(JointId::kRightHand)] = {
+      .p_in_rig_m = {x_m, 0, 2}, .cov_m2 = Covariance3::isotropic(0.02), .state = state};
+  return watch.see({0, t_s, picture, frame, {&person, 1}, {}});
 }
 
 TEST(Skew, AWarningWhereItMattersAndNotTooOften) {

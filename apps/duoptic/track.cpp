@@ -1,9 +1,6 @@
-// duoptic track: two videos or cameras and three clicks in, the arm in 3D out.
+// duoptic track: two videos or cameras and clicks on joints in, persons in 3D out.
 #include <fmt/format.h>
 
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -12,6 +9,7 @@
 #include "progress.h"
 #include "recording.h"
 #include "rig_report.h"
+#include "selection.h"
 #include "sink_options.h"
 #include "skew_watch.h"
 #include "timing.h"
@@ -20,17 +18,19 @@ namespace duo::app::track {
 namespace {
 
 constexpr char kFooter[] =
-    "Clicks are pixels of the raw left picture at --at-frame; tracking starts there. Prints JSON lines: a header, then a line "
-    "a\n"
-    "frame with each joint's place in metres (rig frame: x right, y down, z forward), its place in the raw left picture, its\n"
-    "state (seen, inferred = hidden but known within sigma, lost) and one standard deviation. Two runs give the same bytes.\n"
+    "Clicks are pixels of the raw left picture at --at-frame; tracking starts there. Both arms: name the joints of both "
+    "sides,\n"
+    "right_hand=.. and left_hand=... Prints JSON lines: a header, then a line per frame with each joint's place in metres "
+    "(rig\n"
+    "frame: x right, y down, z forward), its place in the raw left picture, its state (seen, inferred = hidden but known "
+    "within\n"
+    "sigma, lost) and one standard deviation. Two runs give the same bytes.\n"
     "Cameras run until Ctrl-C, which ends the files; a frame that comes too late is left out (skew_ms: the right picture's\n"
     "time after the left's).\n\n"
     "Examples:\n"
     "  duoptic track left.avi right.avi --rig rig.json --select hand=451,360 --select elbow=478,285 --select shoulder=446,201\n"
-    "  duoptic track left.avi right.avi --rig rig.json --at-frame 40 --select hand=.. --select elbow=.. --select shoulder=.. "
-    "\\\n"
-    "      --select2 hand=.. --select2 elbow=.. --select2 shoulder=.. -o arms.jsonl --video arms.mp4\n"
+    "  duoptic track left.avi right.avi --rig rig.json --at-frame 40 --select left_hand=.. --select left_elbow=.. \\\n"
+    "      --select left_shoulder=.. --select right_hand=.. --select right_elbow=.. --select right_shoulder=.. -o arms.jsonl\n"
     "  duoptic track clip.mkv --select hand=.. --select elbow=.. --select shoulder=.. --realtime --vmc 127.0.0.1:39539 \\\n"
     "      --bvh arm.bvh --csv arm.csv -o arm.jsonl                       a recording, with its own rig, to an avatar and to "
     "files\n"
@@ -39,56 +39,14 @@ constexpr char kFooter[] =
 
 struct Options {
   std::string left, right, rig, record;
-  std::vector<std::string> select, select2;
+  std::vector<std::string> select;
+  std::string arm_side = "right";
   std::int64_t at_frame = 0;
   double skew_ms = 0;
   bool force = false, stats = false, quiet = false, realtime = false;
   ArmOptions arm;
   SinkOptions sinks;
 };
-
-using Click = ArmSelection::Click;
-
-/// "hand=451,360" as the joint's index and where it is.
-std::pair<std::size_t, Click> parse_click(const char* option, const std::string& text) {
-  const std::string_view all = text;
-  const std::size_t equals = std::min(all.find('='), all.size()), comma = std::min(all.find(',', equals), all.size());
-  const auto number = [](std::string_view part, double& out) {
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), out);
-    return error == std::errc() && end == part.data() + part.size() && std::isfinite(out);
-  };
-  Click click;
-  if (comma == all.size() || !number(all.substr(equals + 1, comma - equals - 1), click.x_px) ||
-      !number(all.substr(comma + 1), click.y_px))
-    throw CLI::ValidationError(option, fmt::format("'{}' is not JOINT=X,Y with two numbers", text));
-  for (std::size_t j = 0; j < kArmJoints; ++j)
-    if (all.substr(0, equals) == kJointNames[j]) return {j, click};
-  throw CLI::ValidationError(option,
-                             fmt::format("no joint '{}'; there are: {}", all.substr(0, equals), fmt::join(kJointNames, ", ")));
-}
-
-ArmSelection parse_selection(const char* option, const std::vector<std::string>& texts) {
-  std::array<std::optional<Click>, kArmJoints> found;
-  for (const std::string& text : texts) {
-    const auto [joint, click] = parse_click(option, text);
-    if (found[joint]) throw CLI::ValidationError(option, fmt::format("{} is given twice", kJointNames[joint]));
-    found[joint] = click;
-  }
-  ArmSelection selection;
-  for (std::size_t j = 0; j < kArmJoints; ++j) {
-    if (!found[j])
-      throw CLI::ValidationError(
-          option, fmt::format("{} is missing; give {}=X,Y of each: {}", kJointNames[j], option, fmt::join(kJointNames, ", ")));
-    selection.clicks[j] = *found[j];
-  }
-  return selection;
-}
-
-std::vector<ArmSelection> selections(const Options& options) {
-  std::vector<ArmSelection> arms = {parse_selection("--select", options.select)};
-  if (!options.select2.empty()) arms.push_back(parse_selection("--select2", options.select2));
-  return arms;
-}
 
 /// Says what happens to live cameras, once, to the engine, and to the recording.
 class Events {
@@ -146,15 +104,20 @@ struct Summary {
 };
 
 /// Tracks from the first frame to the end of the files, or to Ctrl-C.
-Result<Summary> track_all(ArmRun& run, Events& events, const Recording& recording, const std::vector<ArmSelection>& arms,
+Result<Summary> track_all(ArmRun& run, Events& events, const Recording& recording, std::span<const Selection> selections,
                           const Options& options, const CLI::App& app) {
-  DUO_TRY(run.select(arms));
+  std::span<const Person> people;
+  if (selections.empty()) {
+    people = run.track();
+  } else {
+    DUO_TRY_ASSIGN(people, run.select(selections));
+  }
   DUO_TRY_ASSIGN(const auto sinks, options.sinks.make(run.header(), run.frames().live(), app));
   Summary summary;
   Progress progress(app, run.frames().count(), options.quiet);
   SkewWatch skew(run.header().rectified.baseline_m);
   while (true) {
-    TrackedFrame frame = run.tracked(run.track());
+    TrackedFrame frame = run.tracked(people);
     if (options.stats) frame.times = run.times();
     for (const auto& [name, sink] : sinks) DUO_TRY(sink->write(frame));
     if (summary.frames++ < Summary::kTimes) {
@@ -168,6 +131,7 @@ Result<Summary> track_all(ArmRun& run, Events& events, const Recording& recordin
     if (const auto warning = run.header().live ? skew.see(frame) : std::nullopt) say(app, "warning: " + *warning);
     DUO_TRY_ASSIGN(summary.end, next_frame(run, events));
     if (summary.end != Next::kPicture) break;
+    people = run.track();
   }
   for (const auto& [name, sink] : sinks) DUO_TRY(sink->finish());
   summary.dropped = dropped_text(sinks);
@@ -183,12 +147,14 @@ std::string text_of(const Summary& summary, double seconds, const ArmRun& run, c
       "{} frame{} of {}x{} in {:.1f} s = {:.1f} frames/s{}; engine {:.1f} ms, tracker {:.1f} ms ({}, {}, {} thread{}){}",
       frames, frames == 1 ? "" : "s", run.header().size.width, run.header().size.height, seconds,
       static_cast<double>(frames) / seconds, dropped, median(summary.engine_ms), median(summary.tracker_ms),
-      run.header().engine, run.header().tracker_preset, options.arm.engine.threads, options.arm.engine.threads == 1 ? "" : "s",
+      run.header().engine, run.header().tracker, options.arm.engine.threads, options.arm.engine.threads == 1 ? "" : "s",
       summary.dropped);
 }
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
-  const std::vector<ArmSelection> arms = selections(options);
+  DUO_TRY_ASSIGN(const auto tracker, make_tracker(options.arm.tracker));
+  if (options.select.empty() && !tracker->starts_by_itself()) throw CLI::RequiredError("--select");
+  const std::vector<Selection> selections = parse_selections(options.select, options.arm_side, tracker->skeletons());
   std::optional<Rig> rig;
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(rig, load_rig(options.rig));
@@ -213,7 +179,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   Events events(app);
   DUO_TRY(first_frame(run, events, options.at_frame, options.left));
   Result<Summary> summary = Summary{};
-  const Times times = timed([&] { summary = track_all(run, events, recording, arms, options, app); });
+  const Times times = timed([&] { summary = track_all(run, events, recording, selections, options, app); });
   recording.stop();
   if (!summary) return summary.error();
   // stdout belongs to the lines when they go there.
@@ -239,11 +205,13 @@ Command add(CLI::App& app) {
       ->required();
   sub->add_option("RIGHT", options->right, "The same of the right camera");
   sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); a recording may bring its own");
-  sub->add_option("--select", options->select, "Where hand, elbow and shoulder are; once for each")
-      ->type_name("JOINT=X,Y")
-      ->required();
-  sub->add_option("--select2", options->select2, "The same of a second arm, which the lines call joints2")
+  sub->add_option(
+         "--select", options->select,
+         "Where a joint is: hand, elbow and shoulder, once for each; of both arms with their sides, left_hand and so on")
       ->type_name("JOINT=X,Y");
+  sub->add_option("--arm", options->arm_side, "The arm that is meant where --select says no side: the person's own")
+      ->check(CLI::IsMember({"left", "right"}))
+      ->capture_default_str();
   sub->add_option("--at-frame", options->at_frame, "The frame of the clicks; those before it are skipped")
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))

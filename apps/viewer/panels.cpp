@@ -9,7 +9,6 @@ namespace duo::app::view {
 namespace {
 
 constexpr float kTitle = 28, kCaption = 34, kMargin = 8;  // heights above and below a picture, and around it
-constexpr double kBoxHalf_m = 0.05;                       // of the box around a joint: about a hand
 
 /// As wide as 12-bit colours need, a pixel high.
 Image<Rgb8> turbo_strip() {
@@ -67,7 +66,7 @@ Result<void> Panels::show(std::shared_ptr<const Shown> shown) {
   if (painted_.size() != d_q4.size()) painted_ = Image<Rgb8>(d_q4.size());
   color_disparity(d_q4, range_, painted_);
   DUO_TRY(textures_.set(depth_, painted_));
-  draw_arm_region(frame, header_.rectified, shown->arms, painted_);
+  draw_regions(frame, header_.rectified, shown->people, painted_);
   DUO_TRY(textures_.set(region_, painted_));
   draw_hue(frame.color, painted_);
   DUO_TRY(textures_.set(hue_, painted_));
@@ -76,7 +75,7 @@ Result<void> Panels::show(std::shared_ptr<const Shown> shown) {
   return {};
 }
 
-Result<std::optional<Clicks::Click>> Panels::draw(ImVec2 from, ImVec2 to, const Clicks& clicks) {
+Result<std::optional<ClickAt>> Panels::draw(ImVec2 from, ImVec2 to, const Clicks& clicks) {
   const float gap = 8 * scale_, half = (to.x - from.x - gap) / 2, third = (to.x - from.x - 2 * gap) / 3;
   // The upper row is as high as its pictures need, but leaves something to the lower one.
   const float high =
@@ -88,7 +87,7 @@ Result<std::optional<Clicks::Click>> Panels::draw(ImVec2 from, ImVec2 to, const 
   const auto click = draw_camera(cell(top(0), {from.x + half, middle_y}, "Left camera", when), clicks);
   draw_depth(cell(top(1), {to.x, middle_y}, "Depth", "metres"));
   DUO_TRY(draw_cloud_panel(cell(bottom(0), {bottom(0).x + third, to.y}, "Points", "drag, wheel, double click")));
-  draw_region(cell(bottom(1), {bottom(1).x + third, to.y}, "Arm region", "by nearest joint"));
+  draw_region(cell(bottom(1), {bottom(1).x + third, to.y}, "Body", "by nearest joint"));
   draw_hue_panel(cell(bottom(2), {to.x, to.y}, "Hue and saturation", "degrees; brightness = saturation"));
   return click;
 }
@@ -121,7 +120,7 @@ Panels::Fit Panels::picture(const Cell& cell, const Texture& texture) {
   return fit;
 }
 
-std::optional<Clicks::Click> Panels::draw_camera(const Cell& cell, const Clicks& clicks) {
+std::optional<ClickAt> Panels::draw_camera(const Cell& cell, const Clicks& clicks) {
   if (!shown_) {
     ImGui::GetWindowDrawList()->AddText(inset(cell.from, 12 * scale_), kFaint, "waiting for the first pictures ...");
     return {};
@@ -129,7 +128,7 @@ std::optional<Clicks::Click> Panels::draw_camera(const Cell& cell, const Clicks&
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const Fit fit = picture(cell, camera_);
   list.PushClipRect(fit.from, fit.to, true);
-  for (const ArmPose& arm : shown_->arms) draw_skeleton(fit, arm);
+  draw_people(fit);
   if (clicks.wanted()) draw_clicks(fit, clicks);
   list.PopClipRect();
   if (clicks.wanted())
@@ -145,38 +144,33 @@ std::optional<Clicks::Click> Panels::draw_camera(const Cell& cell, const Clicks&
   text_on_picture(list, {mouse.x + 14 * scale_, mouse.y + 10 * scale_}, kText, clicks.name(clicks.made().size()).c_str());
   list.AddCircle(mouse, 7 * scale_, kAccent, 0, 2 * scale_);
   if (!let_go) return {};
-  return Clicks::Click{(mouse.x - fit.from.x) / fit.scale - 0.5, (mouse.y - fit.from.y) / fit.scale - 0.5};
+  return ClickAt{(mouse.x - fit.from.x) / fit.scale - 0.5, (mouse.y - fit.from.y) / fit.scale - 0.5};
 }
 
 /// Bones, boxes and rings of one sigma; broken where a joint is not seen.
-void Panels::draw_skeleton(const Fit& fit, const ArmPose& arm) const {
+void Panels::draw_people(const Fit& fit) const {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float thick = 4 * scale_, dash = 7 * scale_;
-  for (std::size_t j = 0; j + 1 < kArmJoints; ++j) {
-    const Keypoint &a = arm.joints[j], &b = arm.joints[j + 1];
-    if (a.state == JointState::kLost || b.state == JointState::kLost) continue;
-    const ImVec2 from = fit.place(a.u_px, a.v_px), to = fit.place(b.u_px, b.v_px);
-    if (a.state == JointState::kSeen && b.state == JointState::kSeen)
-      list.AddLine(from, to, kBone, thick);
-    else
+  const Shapes shapes = shapes_of(shown_->people, header_);
+  for (const Shapes::Line& bone : shapes.bones) {
+    const ImVec2 from = fit.place(bone.x0_px, bone.y0_px), to = fit.place(bone.x1_px, bone.y1_px);
+    if (bone.broken)
       dashed_line(list, from, to, kBone, thick, dash);
+    else
+      list.AddLine(from, to, kBone, thick);
   }
-  for (std::size_t j = 0; j < kArmJoints; ++j) {
-    const Keypoint& joint = arm.joints[j];
-    if (joint.state == JointState::kLost) continue;
-    const ImVec2 at = fit.place(joint.u_px, joint.v_px);
-    const double px_per_m = fit.scale * header_.rectified.focal_px / std::max(joint.p_in_rig_m.z, 0.1);
-    const auto half = static_cast<float>(std::clamp(kBoxHalf_m * px_per_m, 5.0, 80.0));
-    const auto ring = static_cast<float>(std::clamp(joint.sigma_m * px_per_m, 3.0, 2000.0));
+  for (const Shapes::Mark& joint : shapes.joints) {
+    const ImVec2 at = fit.place(joint.x_px, joint.y_px);
+    const float half = fit.scale * static_cast<float>(joint.half_px), ring = fit.scale * static_cast<float>(joint.sigma_px);
     const ImVec2 corners[] = {
         {at.x - half, at.y - half}, {at.x + half, at.y - half}, {at.x + half, at.y + half}, {at.x - half, at.y + half}};
-    if (joint.state == JointState::kSeen) {
+    if (joint.broken) {
+      for (std::size_t i = 0; i < 4; ++i) dashed_line(list, corners[i], corners[(i + 1) % 4], kBox, 2.5f * scale_, dash / 2);
+      dashed_circle(list, at, ring, IM_COL32(255, 255, 255, 150), 1.5f * scale_, dash / 2);
+    } else {
       list.AddRect(corners[0], corners[2], kBox, 2 * scale_, 0, 2.5f * scale_);
       list.AddCircle(at, ring, IM_COL32(255, 255, 255, 190), 0, 1.5f * scale_);
       list.AddCircleFilled(at, 4 * scale_, kBox);
-    } else {
-      for (std::size_t i = 0; i < 4; ++i) dashed_line(list, corners[i], corners[(i + 1) % 4], kBox, 2.5f * scale_, dash / 2);
-      dashed_circle(list, at, ring, IM_COL32(255, 255, 255, 150), 1.5f * scale_, dash / 2);
     }
   }
 }
@@ -185,7 +179,7 @@ void Panels::draw_clicks(const Fit& fit, const Clicks& clicks) const {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   for (std::size_t i = 0; i < clicks.made().size(); ++i) {
     const ImVec2 at = fit.place(clicks.made()[i].x_px, clicks.made()[i].y_px);
-    if (i % kArmJoints != 0)
+    if (clicks.joined(i))
       list.AddLine(fit.place(clicks.made()[i - 1].x_px, clicks.made()[i - 1].y_px), at, IM_COL32(82, 168, 255, 150),
                    2 * scale_);
     list.AddCircleFilled(at, 4 * scale_, kAccent);
@@ -194,20 +188,18 @@ void Panels::draw_clicks(const Fit& fit, const Clicks& clicks) const {
   }
 }
 
-/// "hand 1.32 m ±2 cm" for each joint of the first arm; where that is too wide, without the sigma.
+/// "hand 1.32 m ±2 cm" for each joint of the first person; where that is too wide, without the sigma.
 void Panels::put_joints(const Cell& cell) const {
-  if (shown_->arms.empty()) return;
+  if (shown_->people.empty()) return;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  for (std::size_t j = 0; j < kArmJoints; ++j) {
-    const Keypoint& k = shown_->arms[0].joints[j];
-    const float width = cell.caption_width / kArmJoints, x = cell.caption.x + static_cast<float>(j) * width;
-    std::string text = fmt::format("{} lost", kJointNames[j]);
-    if (k.state != JointState::kLost) {
-      text = fmt::format("{} {:.2f} m", kJointNames[j], k.p_in_rig_m.z);
-      const std::string exact = fmt::format("{} \u00b1{:.0f} cm", text, std::ceil(100 * k.sigma_m));
-      if (ImGui::CalcTextSize(exact.c_str()).x < width) text = exact;
-    }
-    list.AddText({x, cell.caption.y + 5 * scale_}, color_of(k.state), text.c_str());
+  const std::vector<Label> labels = labels_of(shown_->people[0]);
+  const float width = cell.caption_width / static_cast<float>(labels.size());
+  float x = cell.caption.x;
+  for (const Label& label : labels) {
+    const std::string exact = label.sigma.empty() ? label.text : fmt::format("{} \u00b1{}", label.text, label.sigma);
+    const bool fits = ImGui::CalcTextSize(exact.c_str()).x < width;
+    list.AddText({x, cell.caption.y + 5 * scale_}, color_of(label.state), (fits ? exact : label.text).c_str());
+    x += width;
   }
 }
 
@@ -295,17 +287,18 @@ Result<void> Panels::draw_cloud_panel(const Cell& cell) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const Fit fit = picture(tall, cloud_);
   list.PushClipRect(fit.from, fit.to, true);
-  for (const ArmPose& arm : shown_->arms) {
-    std::optional<ImVec2> before;
-    for (const Keypoint& joint : arm.joints) {
-      const auto at = joint.state == JointState::kLost ? std::nullopt : camera.place(joint.p_in_rig_m);
-      const auto place = at ? std::optional(fit.place(at->x_px, at->y_px)) : std::nullopt;
-      if (before && place) list.AddLine(*before, *place, kBone, 3.5f * scale_);
-      before = place;
+  for (const Person& person : shown_->people) {
+    std::vector<std::optional<ImVec2>> places(person.count());
+    for (std::size_t j = 0; j < places.size(); ++j)
+      if (person.joints[j].state != JointState::kLost)
+        if (const auto at = camera.place(person.joints[j].p_in_rig_m)) places[j] = fit.place(at->x_px, at->y_px);
+    for (std::size_t j = 0; j < places.size(); ++j) {
+      const int parent = person.skeleton->joints[j].parent;
+      const auto from = parent < 0 ? std::nullopt : places[static_cast<std::size_t>(parent)];
+      if (from && places[j]) list.AddLine(*from, *places[j], kBone, 3.5f * scale_);
     }
-    for (const Keypoint& joint : arm.joints)
-      if (const auto at = camera.place(joint.p_in_rig_m); at && joint.state != JointState::kLost)
-        list.AddCircleFilled(fit.place(at->x_px, at->y_px), 5 * scale_, color_of(joint.state));
+    for (std::size_t j = 0; j < places.size(); ++j)
+      if (places[j]) list.AddCircleFilled(*places[j], 5 * scale_, color_of(person.joints[j].state));
   }
   list.PopClipRect();
   return {};
@@ -316,13 +309,14 @@ void Panels::draw_region(const Cell& cell) {
   picture(cell, region_);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   float x = cell.caption.x;
-  for (std::size_t j = 0; j < kArmJoints; ++j) {
-    const Rgb8 c = kJointShades[j];
-    const std::string name(kJointNames[j]);
+  const std::vector<JointId> joints = shaded_joints(header_);
+  for (const JointId joint : joints) {
+    const Rgb8 c = shade_of(joint);
+    const std::string name(part_of(joint));
     list.AddRectFilled({x, cell.caption.y + 6 * scale_}, {x + 16 * scale_, cell.caption.y + 20 * scale_},
                        IM_COL32(c.r, c.g, c.b, 255), 3 * scale_);
     list.AddText({x + 22 * scale_, cell.caption.y + 5 * scale_}, kText, name.c_str());
-    x += std::min(40 * scale_ + ImGui::CalcTextSize(name.c_str()).x, cell.caption_width / 3);
+    x += std::min(40 * scale_ + ImGui::CalcTextSize(name.c_str()).x, cell.caption_width / static_cast<float>(joints.size()));
   }
 }
 

@@ -1,4 +1,4 @@
-// The five pictures of the window: camera with joints, depth, points, arm region, hue.
+// The five pictures of the window: camera with joints, depth, points, body, hue.
 #pragma once
 
 #include <memory>
@@ -6,11 +6,17 @@
 
 #include "clicks.h"
 #include "cloud.h"
+#include "duoptic/paint.h"
 #include "player.h"
 #include "style.h"
 #include "window.h"
 
 namespace duo::app::view {
+
+/// Raw pixels of the camera's picture.
+struct ClickAt {
+  double x_px = 0, y_px = 0;
+};
 
 /// Draws what is shown; gives back where the camera's picture was clicked.
 class Panels {
@@ -20,7 +26,7 @@ class Panels {
   /// The next draw() shows this.
   Result<void> show(std::shared_ptr<const Shown> shown);
   /// Between two corners of ImGui's current window; a click in raw pixels, when there was one.
-  Result<std::optional<Clicks::Click>> draw(ImVec2 from, ImVec2 to, const Clicks& clicks);
+  Result<std::optional<ClickAt>> draw(ImVec2 from, ImVec2 to, const Clicks& clicks);
   /// A click has begun: it is where the button is let go.
   bool pressed() const { return pressed_; }
 
@@ -41,8 +47,8 @@ class Panels {
 
   Cell cell(ImVec2 from, ImVec2 to, const char* title, const std::string& note) const;
   Fit picture(const Cell& cell, const Texture& texture);
-  std::optional<Clicks::Click> draw_camera(const Cell& cell, const Clicks& clicks);
-  void draw_skeleton(const Fit& fit, const ArmPose& arm) const;
+  std::optional<ClickAt> draw_camera(const Cell& cell, const Clicks& clicks);
+  void draw_people(const Fit& fit) const;
   void draw_clicks(const Fit& fit, const Clicks& clicks) const;
   void put_joints(const Cell& cell) const;
   void draw_depth(const Cell& cell);

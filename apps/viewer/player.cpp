@@ -54,6 +54,7 @@ Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options) {
   player->live_ = run.header().live;
   player->still_ = run.frames().still();
   player->count_ = run.frames().count();
+  player->asks_for_clicks_ = !run.tracker().starts_by_itself();
   player->status_.loop = options.loop;
   if (!options.lines.empty()) {
     DUO_TRY_ASSIGN(player->lines_, make_json_lines(options.lines, run.header()));
@@ -123,32 +124,33 @@ void Player::loop(bool on) {
   });
 }
 
-void Player::select(const std::vector<ArmSelection>& arms) {
-  post([this, arms] {
+void Player::select(const std::vector<Selection>& selections) {
+  post([this, selections] {
     if (!has_frame_ || !run_) return;
-    if (const auto selected = run_->select(arms); !selected) {
+    const auto selected = run_->select(selections);
+    if (!selected) {
       fail(selected.error(), false);
       const std::lock_guard lock(mutex_);
       ++status_.refused;
       return;
     }
-    selected_.emplace(static_cast<std::int64_t>(run_->frames().last().pair.sequence), arms);
+    selected_.emplace(static_cast<std::int64_t>(run_->frames().last().pair.sequence), selections);
     {
       const std::lock_guard lock(mutex_);
       status_.problem.clear();
     }
-    const bool first = arms_.empty();
-    arms_ = run_->track();
-    if (first) write_line(run_->tracked(arms_));  // else this frame has its line already
+    const bool first = people_.empty();
+    keep(*selected);
+    if (first) write_line(run_->tracked(people_));  // else this frame has its line already
     show(0);
   });
 }
 
-void Player::forget_arms() {
+void Player::forget_people() {
   post([this] {
     if (run_) run_->reset();
     selected_.reset();
-    arms_.clear();
+    people_.clear();
     if (has_frame_) show(0);
   });
 }
@@ -270,11 +272,12 @@ void Player::advance() {
   next_ms_ = std::max(next_ms_, now - 1000 * header_.frame_s) + 1000 * header_.frame_s;
 
   const auto number = static_cast<std::int64_t>(run_->frames().last().pair.sequence);
-  if (!live_ && selected_ && selected_->first == number) (void)run_->select(selected_->second);
-  arms_ = run_->track();
-  if (!arms_.empty()) write_line(run_->tracked(arms_));
+  const bool again = !live_ && selected_ && selected_->first == number;
+  const auto selected = again ? run_->select(selected_->second) : Result<std::span<const Person>>(run_->track());
+  keep(selected ? *selected : run_->track());
+  if (!people_.empty()) write_line(run_->tracked(people_));
   std::string words = run_->frames().last().event;
-  if (const auto warning = live_ ? skew_.see(run_->tracked(arms_)) : std::nullopt) words += *warning;
+  if (const auto warning = live_ ? skew_.see(run_->tracked(people_)) : std::nullopt) words += *warning;
   if (!words.empty()) {
     constexpr double kRead_ms = 10'000;
     passing_words_ = std::move(words);
@@ -312,7 +315,7 @@ bool Player::reopen() {
   passed_ += frames;
   passed_s_ += static_cast<double>(frames) * header_.frame_s;
   has_frame_ = false;
-  arms_.clear();
+  people_.clear();
   return true;
 }
 
@@ -328,19 +331,19 @@ void Player::write_line(TrackedFrame frame) {
 }
 
 void Player::show(double interval_ms) {
-  const TrackedFrame now = run_->tracked(arms_);
+  const TrackedFrame now = run_->tracked(people_);
   auto shown = std::make_shared<Shown>();
   shown->number = now.number;
   shown->t_s = now.t_s;
   shown->left = copy_of(now.left);
   shown->frame.color = now.frame.color.clone();
   shown->frame.disparity.d_q4 = now.frame.disparity.d_q4.clone();
-  shown->arms = arms_;
+  shown->people = people_;
   shown->times = run_->times();
   shown->interval_ms = interval_ms;
   shown->skew_ms = static_cast<double>(now.frame.skew_ns) * 1e-6;
   shown->latency_ms = live_ ? now_ms() - static_cast<double>(now.left.t_ns) * 1e-6
-                            : shown->times.engine_ms + (arms_.empty() ? 0 : shown->times.tracker_ms);
+                            : shown->times.engine_ms + (people_.empty() ? 0 : shown->times.tracker_ms);
   const std::lock_guard lock(mutex_);
   newest_ = std::move(shown);
   status_.lines = written_;

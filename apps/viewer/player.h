@@ -33,7 +33,7 @@ struct Shown {
   double t_s = 0;
   Picture left;  // raw
   Frame frame;   // disparity and colour
-  std::vector<ArmPose> arms;
+  std::vector<Person> people;
   TrackTimes times;
   double skew_ms = 0;      // how much later the right picture was taken
   double latency_ms = 0;   // live: from the picture's capture to here; files: what engine and tracker took
@@ -68,7 +68,8 @@ class Player {
   const Rig& rig() const { return rig_; }
   bool live() const { return live_; }
   bool still() const { return still_; }
-  std::int64_t count() const { return count_; }  // pairs; 0: not known
+  bool asks_for_clicks() const { return asks_for_clicks_; }  // the tracker does not start by itself
+  std::int64_t count() const { return count_; }              // pairs; 0: not known
 
   std::shared_ptr<const Shown> newest() const;
   PlayerStatus status() const;
@@ -79,8 +80,8 @@ class Player {
   void restart();
   void loop(bool on);
   /// Tracks from the clicks on the frame shown last; at their frame of a file again each time that it comes by.
-  void select(const std::vector<ArmSelection>& arms);
-  void forget_arms();
+  void select(const std::vector<Selection>& selections);
+  void forget_people();
   void set(const std::vector<std::pair<std::string, double>>& parameters);
   /// Live, all pairs that the source gives, paused or not; of files those that are read, up to the end. Not of one picture.
   void record(bool on);
@@ -101,6 +102,7 @@ class Player {
   void advance();
   void at_end(Next end);
   bool reopen();
+  void keep(std::span<const Person> people) { people_.assign(people.begin(), people.end()); }
   void show(double interval_ms);
   void write_line(TrackedFrame frame);
   void fail(const Error& error, bool for_good);
@@ -109,7 +111,7 @@ class Player {
   PlayerOptions options_;
   TrackHeader header_;
   Rig rig_;
-  bool live_ = false, still_ = false;
+  bool live_ = false, still_ = false, asks_for_clicks_ = true;
   std::int64_t count_ = 0;
 
   Recording recording_;
@@ -117,9 +119,9 @@ class Player {
   // The thread's own.
   std::optional<ArmRun> run_;
   std::unique_ptr<Sink> lines_;
-  std::vector<ArmPose> arms_;
-  std::optional<std::pair<std::int64_t, std::vector<ArmSelection>>> selected_;  // at which frame
-  std::int64_t passed_ = 0;                                                     // frames of earlier rounds of a loop
+  std::vector<Person> people_;
+  std::optional<std::pair<std::int64_t, std::vector<Selection>>> selected_;  // at which frame
+  std::int64_t passed_ = 0;                                                  // frames of earlier rounds of a loop
   double passed_s_ = 0;
   bool has_frame_ = false, step_ = false;
   double next_ms_ = 0, last_ms_ = 0;  // when the next frame is due and when the last came, CLOCK_MONOTONIC

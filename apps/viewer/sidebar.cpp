@@ -63,7 +63,7 @@ Result<Sidebar> Sidebar::make(const PlayerOptions& options, const Player& player
 void Sidebar::add(const Shown& shown) {
   if (shown.interval_ms <= 0) return;
   speeds_.push_back({static_cast<float>(shown.times.engine_ms),
-                     shown.arms.empty() ? 0.0f : static_cast<float>(shown.times.tracker_ms),
+                     shown.people.empty() ? 0.0f : static_cast<float>(shown.times.tracker_ms),
                      static_cast<float>(shown.latency_ms), static_cast<float>(shown.interval_ms)});
   if (speeds_.size() > kPlotted) speeds_.pop_front();
 }
@@ -84,33 +84,31 @@ bool Sidebar::draw(Player& player, Clicks& clicks, const Shown* shown, const std
 }
 
 void Sidebar::put_clicks(Player& player, Clicks& clicks, const Shown* shown, const PlayerStatus& status) {
-  const bool tracking = shown != nullptr && !shown->arms.empty();
+  const bool tracking = shown != nullptr && !shown->people.empty();
   ImGui::PushFont(title_font());
   colored(clicks.wanted() ? kAccent
           : tracking      ? kBox
                           : kFaint,
           clicks.wanted() ? clicks.prompt()
           : tracking      ? "Tracking"
-                          : "No arm is selected");
+                          : "Nobody is selected");
   ImGui::PopFont();
   if (!status.problem.empty()) colored(kBad, status.problem);
-  for (std::size_t i = 0; i < kArmsNames.size(); ++i) {
+  for (std::size_t i = 0; i < clicks.choices().size(); ++i) {
     if (i > 0) ImGui::SameLine();
-    if (ImGui::RadioButton(kArmsNames[i], clicks.arms() == static_cast<Arms>(i))) clicks.start(static_cast<Arms>(i));
+    if (ImGui::RadioButton(clicks.choices()[i].c_str(), clicks.choice() == i)) clicks.start(i);
   }
-  ImGui::SameLine(0, 12 * scale_);
-  ImGui::TextDisabled(clicks.arms() == Arms::kBoth ? "arms" : "arm");
   const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
   if (ImGui::Button(clicks.wanted() ? "Undo click" : "Select again", {half, 0})) {
     if (clicks.wanted())
       clicks.undo();
     else
-      clicks.start(clicks.arms());
+      clicks.start(clicks.choice());
   }
   ImGui::SameLine();
   if (ImGui::Button("Reset", {half, 0})) {
-    player.forget_arms();
-    clicks.start(clicks.arms());
+    player.forget_people();
+    clicks.start(clicks.choice());
   }
 }
 
@@ -179,18 +177,18 @@ void Sidebar::put_recording(Player& player, const PlayerStatus& status) const {
 }
 
 void Sidebar::put_joints(const Shown* shown) const {
-  if (shown == nullptr || shown->arms.empty()) return;
+  if (shown == nullptr || shown->people.empty()) return;
   title("Joints, metres");
   if (!ImGui::BeginTable("joints", 6)) return;
   const std::pair<const char*, float> columns[] = {{"", 1.35f}, {"", 1.3f}, {"x", 1}, {"y", 1}, {"z", 1}, {"\u00b1 cm", 0.9f}};
   for (const auto& [name, share] : columns) ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, share);
   ImGui::TableHeadersRow();
-  for (const ArmPose& arm : shown->arms)
-    for (std::size_t j = 0; j < kArmJoints; ++j) {
-      const Keypoint& k = arm.joints[j];
+  for (const Person& person : shown->people)
+    for (std::size_t j = 0; j < person.count(); ++j) {
+      const Joint& k = person.joints[j];
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(kJointNames[j].data());
+      ImGui::TextUnformatted(part_of(person.skeleton->joints[j].id).data());
       ImGui::TableNextColumn();
       ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(color_of(k.state)), "%s", word_of(k.state));
       if (k.state == JointState::kLost) continue;
@@ -199,7 +197,7 @@ void Sidebar::put_joints(const Shown* shown) const {
         ImGui::TextUnformatted(fmt::format("{:.2f}", value).c_str());
       }
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(fmt::format("{:.1f}", 100 * k.sigma_m).c_str());
+      ImGui::TextUnformatted(fmt::format("{:.1f}", 100 * k.sigma_m()).c_str());
     }
   ImGui::EndTable();
 }

@@ -3,7 +3,7 @@
 
 #include <imgui/imgui.h>
 
-#include "duoptic/tracker.h"
+#include "duoptic/person.h"
 
 namespace duo::app::view {
 

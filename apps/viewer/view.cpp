@@ -1,4 +1,4 @@
-// duoptic view: a window on a source: depth, points, and an arm in 3D from three clicks.
+// duoptic view: a window on a source: depth, points, and persons in 3D from clicks on their joints.
 #include <fmt/format.h>
 
 #define GLFW_INCLUDE_NONE
@@ -50,7 +50,8 @@ class Viewer {
         window_(window),
         player_(player),
         panels_(window.textures(), player.header(), window.scale()),
-        sidebar_(std::move(sidebar)) {}
+        sidebar_(std::move(sidebar)),
+        clicks_(player.header().skeletons, player.asks_for_clicks()) {}
 
   /// Until the window is closed.
   Result<void> run() {
@@ -78,7 +79,7 @@ class Viewer {
   void take_newest() {
     // Clicks that were refused are asked for again; the side says why.
     if (const int refused = player_.status().refused; refused != std::exchange(refused_, refused))
-      clicks_.start(clicks_.arms());
+      clicks_.start(clicks_.choice());
     const auto newest = player_.newest();
     if (!newest || newest == shown_) return;
     shown_ = newest;
@@ -112,15 +113,15 @@ class Viewer {
   }
 
   void put_title() {
-    const std::string doing = !shown_                 ? ""
-                              : clicks_.wanted()      ? ": " + clicks_.prompt()
-                              : !shown_->arms.empty() ? ": tracking"
-                                                      : "";
+    const std::string doing = !shown_                   ? ""
+                              : clicks_.wanted()        ? ": " + clicks_.prompt()
+                              : !shown_->people.empty() ? ": tracking"
+                                                        : "";
     window_.set_title("duoptic view" + doing + (player_.recording().on ? ", recording" : ""));
   }
 
-  void take_click(Clicks::Click click) {
-    if (!clicks_.add(click)) return;
+  void take_click(ClickAt click) {
+    if (!clicks_.add(click.x_px, click.y_px)) return;
     player_.select(clicks_.selections());
     clicks_.stop();
   }

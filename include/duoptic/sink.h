@@ -2,10 +2,10 @@
 // frame after frame and gives its file the name at the end.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,37 +25,6 @@ Result<Image<float>> read_pfm(const std::filesystem::path& path);
 /// The same for bytes already in memory; `name` stands for them in messages.
 Result<Image<float>> parse_pfm(std::string_view bytes, const std::string& name);
 
-/// The disparities that get the first and the last colour.
-struct DisparityRange {
-  double far_px = 0, near_px = 0;
-  bool empty() const { return near_px <= far_px; }
-};
-/// From the 1st to the 99th percentile of the valid pixels, at least 1 px wide; empty without any.
-DisparityRange disparity_range(View<const std::uint16_t> d_q4);
-
-/// Disparity as colours: the Turbo map (Mikhailov 2019), near is red, none is black, with a legend; the legend is in
-/// metres when `rectified` is given, else in px. The range of the colours is disparity_range().
-Image<Rgb8> draw_disparity(View<const std::uint16_t> d_q4, const Rectified* rectified);
-
-/// Disparity in the colours of draw_disparity() over a given range; black where there is none.
-///
-/// Shape  both H x W
-void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range, View<Rgb8> dst);
-
-/// The shades of hand, elbow and shoulder in draw_arm_region().
-inline constexpr std::array<Rgb8, kArmJoints> kJointShades = {Rgb8{190, 255, 170}, Rgb8{70, 190, 90}, Rgb8{24, 112, 62}};
-
-/// The rectified picture, dark and gray, with the arm's pixels in the shade of the joint they are nearest to. The arm is what
-/// lies within a hand's, forearm's or upper arm's radius of the bones between joints that are not lost.
-///
-/// Shape  dst like the frame's maps; of these it needs disparity and colour
-void draw_arm_region(const Frame& frame, const Rectified& rectified, const std::vector<ArmPose>& arms, View<Rgb8> dst);
-
-/// Hue as colour, saturation as brightness.
-///
-/// Shape  src and dst H x W
-void draw_hue(View<const Rgb8> src, View<Rgb8> dst);
-
 Result<void> write_png(View<const Rgb8> picture, const std::filesystem::path& path);
 Result<void> write_png(View<const std::uint8_t> picture, const std::filesystem::path& path);
 Result<void> write_png(View<const std::uint16_t> picture, const std::filesystem::path& path);
@@ -65,21 +34,15 @@ Result<void> write_png(View<const std::uint16_t> picture, const std::filesystem:
 Result<void> write_ply(View<const std::uint16_t> d_q4, View<const Rgb8> color, const Rectified& rectified,
                        const std::filesystem::path& path);
 
-/// The cloud drawn from a camera moved sideways and up, so that a person sees its shape without a 3D program.
-Image<Rgb8> draw_cloud(View<const std::uint16_t> d_q4, View<const Rgb8> color, const Rectified& rectified, Size size);
-
-/// Which arm of the person, as the person says it.
-enum class ArmSide : std::uint8_t { kRight, kLeft };
-
 /// What sinks are told before the first frame.
 struct TrackHeader {
   std::vector<std::string> sources;  // as the user named them, left first
-  std::string engine, device, matcher, matcher_preset, tracker, tracker_preset;
+  std::string engine, device, matcher, matcher_preset, tracker;
+  std::vector<const Skeleton*> skeletons;  // that persons may have
   Rectified rectified;
   Size size;  // of the raw left picture
   double frame_s = 1.0 / 30;
-  bool live = false;                    // from cameras: what differs from run to run is told, too
-  ArmSide first_arm = ArmSide::kRight;  // of TrackedFrame::arms; a second arm is the other one
+  bool live = false;  // from cameras: what differs from run to run is told, too
 };
 
 struct TrackTimes {
@@ -92,7 +55,7 @@ struct TrackedFrame {
   double t_s = 0;           // since the source's first picture
   const Picture& left;      // raw
   const Frame& frame;       // with disparity and colour
-  const std::vector<ArmPose>& arms;
+  std::span<const Person> people;
   std::optional<TrackTimes> times;  // written only when given, because they differ from run to run
 };
 
@@ -111,25 +74,25 @@ class Sink {
   virtual Result<void> finish() = 0;
 };
 
-/// JSON lines: a header, then a line a frame (see docs/json_lines.md). An empty `path` is stdout.
+/// JSON lines: a header, then a line per frame (see docs/json_lines.md). An empty `path` is stdout.
 ///
 /// Errors  those of every written file
 Result<std::unique_ptr<Sink>> make_json_lines(const std::filesystem::path& path, const TrackHeader& header);
 
-/// The four panels as H.264 in MP4, 4:2:0, which plays everywhere; MPEG-4 part 2 where this machine's libav has no H.264
-/// encoder, which `note` then says.
+/// The four panels of duoptic/paint.h as H.264 in MP4, 4:2:0, which plays everywhere; MPEG-4 part 2 where this machine's libav
+/// has no H.264 encoder, which `note` then says.
 ///
 /// Errors  those of every written file; no encoder at all
 Result<std::unique_ptr<Sink>> make_panel_video(const std::filesystem::path& path, const TrackHeader& header, std::string& note);
 
-/// A row a frame and arm, see docs/formats.md.
+/// A row per frame, person and joint, see docs/formats.md.
 ///
 /// Errors  those of every written file
 Result<std::unique_ptr<Sink>> make_csv(const std::filesystem::path& path, Axes axes);
 
-/// Motion for animation programs: a hierarchy an arm (shoulder, elbow, hand, with the median length of its bones) and a line of
-/// channels each frame_s from the first frame on. Metres, y up, see docs/formats.md. Kept in memory until finish(), 80 bytes an
-/// arm and frame.
+/// Motion for animation programs: a hierarchy per person, with the median length of its bones, and a line of channels each
+/// frame_s from the first frame on. Metres, y up, see docs/formats.md. Kept in memory until finish(), some 30 bytes per person,
+/// joint and frame.
 ///
 /// Errors  those of every written file
 Result<std::unique_ptr<Sink>> make_bvh(const std::filesystem::path& path, const TrackHeader& header);
@@ -140,17 +103,13 @@ Result<std::unique_ptr<Sink>> make_bvh(const std::filesystem::path& path, const 
 /// Errors  not host:port, no such host
 Result<std::unique_ptr<Sink>> make_osc(const std::string& target, Axes axes);
 
-/// The same with the Virtual Motion Capture protocol: bones of a humanoid avatar as rotations from its T-pose.
-Result<std::unique_ptr<Sink>> make_vmc(const std::string& target, const TrackHeader& header);
+/// The same with the Virtual Motion Capture protocol: bones of a humanoid avatar as rotations from its T-pose. Of two persons
+/// with the same skeleton the first is sent.
+Result<std::unique_ptr<Sink>> make_vmc(const std::string& target);
 
 /// `sink` behind a thread and a queue, for live sources: write() copies what the sink wants and returns. The queue has room for
 /// two seconds of poses, or for four frames with their pictures; when it is full the oldest frame in it goes, and dropped()
 /// counts. Errors of `sink` come with the next call.
 std::unique_ptr<Sink> in_background(std::unique_ptr<Sink> sink);
-
-/// The thesis's four panels: the raw left picture with joints as green boxes and bones as red lines, both broken where a joint
-/// is inferred; depth in colours over `range`, with a legend in metres; the arm's pixels in three shades, one a joint; hue as
-/// colour with saturation as brightness. The same size for every frame of a recording, even in both directions.
-Image<Rgb8> draw_panels(const TrackedFrame& frame, const TrackHeader& header, const DisparityRange& range);
 
 }  // namespace duo

@@ -67,5 +67,7 @@ const Skeleton* skeleton_named(std::string_view name);
 /// The joint of that name; none when there is none.
 std::optional<JointId> joint_named(std::string_view name);
 std::string_view name_of(JointId id);
+/// The name without its side: "hand".
+std::string_view part_of(JointId id);
 
 }  // namespace duo

@@ -12,6 +12,7 @@
 
 #include "duoptic/frame.h"
 #include "duoptic/rig.h"
+#include "duoptic/skeleton.h"
 
 namespace duo {
 
@@ -59,7 +60,7 @@ struct SyntheticClipSetup {
 
 /// Where a joint is. It lies inside the body: what a camera sees of it is nearer.
 struct SyntheticJoint {
-  std::string name;  // left_ or right_ with shoulder elbow wrist hand hip knee ankle; head, neck, pelvis
+  JointId id = JointId::kPelvis;
   Vec3 p_in_left_m;  // in the raw left camera
   std::optional<std::array<double, 2>> uv_left_px, uv_right_px;  // in the raw pictures; none far outside of them
   bool in_left = false, in_right = false;                        // inside the picture
@@ -74,7 +75,7 @@ struct SyntheticClipFrame {
   double t_s = 0;
   double ceiling_light = 1;  // power of the lamp
   std::string act;           // what the arm does
-  std::vector<SyntheticJoint> joints;
+  std::vector<SyntheticJoint> joints;  // 17: of kBody without spine, chest and feet
   Image<float> depth_left_m;        // as in SyntheticPair
   Image<std::uint8_t> figure_left;  // 255 where that is the person
 };
@@ -102,8 +103,8 @@ class SyntheticClip {
   };
   Pinhole pinhole(int index);
 
-  /// Flesh and cloth that may lie in front of a visible joint, by the joint's name without its side.
-  static double tolerance_m(const std::string& joint);
+  /// Flesh and cloth that may lie in front of a visible joint.
+  static double tolerance_m(JointId joint);
 
  private:
   struct State;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "body/bone_turns.h"
 #include "duoptic/person.h"
 
 namespace duo {
@@ -56,6 +57,51 @@ TEST(Person, SumsUpItsJoints) {
   person.sum_up();
   EXPECT_EQ(person.presence, Presence::kLost);
   EXPECT_TRUE(person.box_px.empty());
+}
+
+/// Places of a body in its T-pose, each bone 0.2 long.
+std::vector<Vec3> t_pose() {
+  std::vector<Vec3> out(kBody.joints.size());
+  for (std::size_t j = 1; j < out.size(); ++j)
+    out[j] = out[static_cast<std::size_t>(kBody.joints[j].parent)] +
+             0.2 * rest_direction(kBody.joints[j].id, BodyAxes::kRightHanded);
+  return out;
+}
+
+void expect_turn(const Mat3& got, const Mat3& want, const std::string& what) {
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(got.m[i], want.m[i], 1e-9) << what << " " << i;
+}
+
+TEST(BoneTurns, NoneInTheTPose) {
+  const auto turns = BoneTurner(kBody, BodyAxes::kRightHanded).turn(t_pose());
+  ASSERT_TRUE(turns);
+  for (std::size_t j = 0; j < turns->size(); ++j) expect_turn((*turns)[j], Mat3{}, std::string(kBody.joints[j].name));
+}
+
+/// By hand: a shin that points to the back has turned a quarter around x, and its foot, which went with it, has not.
+TEST(BoneTurns, AKneeBendsAroundItsHinge) {
+  std::vector<Vec3> places = t_pose();
+  const auto at = [](JointId id) { return static_cast<std::size_t>(id); };
+  places[at(JointId::kLeftAnkle)] = places[at(JointId::kLeftKnee)] + Vec3{0, 0, -0.2};
+  places[at(JointId::kLeftFoot)] = places[at(JointId::kLeftAnkle)] + Vec3{0, -0.2, 0};
+  const auto turns = BoneTurner(kBody, BodyAxes::kRightHanded).turn(places);
+  ASSERT_TRUE(turns);
+  expect_turn((*turns)[at(JointId::kLeftHip)], Mat3{}, "hip");
+  expect_turn((*turns)[at(JointId::kLeftKnee)], Mat3{{1, 0, 0, 0, 0, -1, 0, 1, 0}}, "knee");
+  expect_turn((*turns)[at(JointId::kLeftAnkle)], Mat3{}, "ankle");
+}
+
+/// A whole body that turns does so at its root alone.
+TEST(BoneTurns, TheRootTurnsWithTheBody) {
+  const Mat3 quarter = {{0, 0, 1, 0, 1, 0, -1, 0, 0}};
+  std::vector<Vec3> places = t_pose();
+  for (Vec3& p : places) p = quarter * p;
+  const auto turns = BoneTurner(kBody, BodyAxes::kRightHanded).turn(places);
+  ASSERT_TRUE(turns);
+  expect_turn((*turns)[0], quarter, "pelvis");
+  for (std::size_t j = 1; j < turns->size(); ++j) expect_turn((*turns)[j], Mat3{}, std::string(kBody.joints[j].name));
+  places[1] = places[0];
+  EXPECT_FALSE(BoneTurner(kBody, BodyAxes::kRightHanded).turn(places)) << "two joints at one place";
 }
 
 }  // namespace

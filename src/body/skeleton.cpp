@@ -76,4 +76,9 @@ std::optional<JointId> joint_named(std::string_view name) {
 
 std::string_view name_of(JointId id) { return kBodyJoints[static_cast<std::size_t>(id)].name; }
 
+std::string_view part_of(JointId id) {
+  const JointDef& joint = kBodyJoints[static_cast<std::size_t>(id)];
+  return joint.side == Side::kMiddle ? joint.name : joint.name.substr(joint.name.find('_') + 1);
+}
+
 }  // namespace duo

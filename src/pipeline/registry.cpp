@@ -1,6 +1,7 @@
 // What can be chosen by name: a table a kind, edited by hand.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "duoptic/engine.h"
 #include "duoptic/tracker.h"
@@ -60,13 +61,27 @@ Result<std::vector<ParameterInfo>> matcher_parameters(std::string_view matcher, 
                fmt::format("list parameters: no matcher is called \"{}\"; choose one of: sgm, pyramid", matcher)};
 }
 
-Result<std::unique_ptr<Tracker>> make_tracker(std::string_view name, std::string_view preset) {
-  if (name != "arm")
-    return Error{ErrorCode::kBadInput, fmt::format("make the tracker: no tracker is called \"{}\"; choose one of: arm", name)};
-  if (preset == "default") return make_arm_tracker();
-  if (preset == "thesis") return make_thesis_tracker();
-  return Error{ErrorCode::kBadInput,
-               fmt::format("make the tracker: arm has no preset \"{}\"; choose one of: default, thesis", preset)};
+namespace {
+
+struct KnownTracker {
+  std::string_view name;
+  std::unique_ptr<Tracker> (*make)();
+};
+constexpr KnownTracker kTrackers[] = {{"arm", make_arm_tracker}, {"thesis", make_thesis_tracker}};
+
+}  // namespace
+
+std::vector<std::string> tracker_names() {
+  std::vector<std::string> out;
+  for (const KnownTracker& tracker : kTrackers) out.emplace_back(tracker.name);
+  return out;
+}
+
+Result<std::unique_ptr<Tracker>> make_tracker(std::string_view name) {
+  for (const KnownTracker& tracker : kTrackers)
+    if (tracker.name == name) return tracker.make();
+  return Error{ErrorCode::kBadInput, fmt::format("make the tracker: no tracker is called \"{}\"; choose one of: {}", name,
+                                                 fmt::join(tracker_names(), ", "))};
 }
 
 }  // namespace duo

@@ -125,15 +125,16 @@ Json pixel(const std::optional<std::array<double, 2>>& uv_px) {
 Json truth_of(const SyntheticClipFrame& frame, int index, const Mat3& rig_from_left) {
   Json joints = Json::object();
   for (const SyntheticJoint& joint : frame.joints)
-    joints[joint.name] = {{"xyz", point(joint.p_in_left_m)},
-                          {"xyz_rect", point(rig_from_left * joint.p_in_left_m)},
-                          {"uv_left", pixel(joint.uv_left_px)},
-                          {"uv_right", pixel(joint.uv_right_px)},
-                          {"in_left", joint.in_left},
-                          {"in_right", joint.in_right},
-                          {"vis_left", joint.visible_left},
-                          {"vis_right", joint.visible_right},
-                          {"surf_z_left", joint.surface_z_left_m ? Json(rounded(*joint.surface_z_left_m, 1e5)) : Json()}};
+    joints[std::string(name_of(joint.id))] = {
+        {"xyz", point(joint.p_in_left_m)},
+        {"xyz_rect", point(rig_from_left * joint.p_in_left_m)},
+        {"uv_left", pixel(joint.uv_left_px)},
+        {"uv_right", pixel(joint.uv_right_px)},
+        {"in_left", joint.in_left},
+        {"in_right", joint.in_right},
+        {"vis_left", joint.visible_left},
+        {"vis_right", joint.visible_right},
+        {"surf_z_left", joint.surface_z_left_m ? Json(rounded(*joint.surface_z_left_m, 1e5)) : Json()}};
   return {{"frame", index},
           {"t", rounded(frame.t_s, 1e6)},
           {"light", {rounded(frame.ceiling_light, 1e4), 1.0, 1.0}},  // ceiling lamp, window, floor lamp
@@ -142,8 +143,10 @@ Json truth_of(const SyntheticClipFrame& frame, int index, const Mat3& rig_from_l
 
 Json meta_of(const SyntheticClipSetup& setup, const Rig& rig, const std::string& name, Json events) {
   Json tolerances = Json::object();
-  for (const char* joint : {"shoulder", "elbow", "wrist", "hand", "hip", "knee", "ankle", "head", "neck", "pelvis"})
-    tolerances[joint] = SyntheticClip::tolerance_m(joint);
+  using enum JointId;
+  for (const JointId joint :
+       {kLeftShoulder, kLeftElbow, kLeftWrist, kLeftHand, kLeftHip, kLeftKnee, kLeftAnkle, kHead, kNeck, kPelvis})
+    tolerances[std::string(part_of(joint))] = SyntheticClip::tolerance_m(joint);
   return {{"clip", name},
           {"width", setup.size.width},
           {"height", setup.size.height},

@@ -54,7 +54,7 @@ TEST(WriteClip, ReadsBackAsItWasRendered) {
   ASSERT_EQ(truth["frames"].size(), 12U);
   const SyntheticClipFrame frame = clip->frame(7);
   for (const SyntheticJoint& joint : frame.joints) {
-    const auto& got = truth["frames"][7]["joints"][joint.name];
+    const auto& got = truth["frames"][7]["joints"][std::string(name_of(joint.id))];
     EXPECT_NEAR(got["xyz"][2].get<double>(), joint.p_in_left_m.z, 1e-5);
     EXPECT_EQ(got["vis_left"], joint.visible_left);
     EXPECT_EQ(got["uv_left"].is_null(), !joint.uv_left_px.has_value());

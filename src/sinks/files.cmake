@@ -4,17 +4,11 @@ set(dir ${PROJECT_SOURCE_DIR}/src/sinks)
 pkg_check_modules(LIBLO REQUIRED IMPORTED_TARGET liblo)
 target_link_libraries(duoptic PRIVATE PkgConfig::LIBLO)
 target_sources(duoptic PRIVATE
-  ${dir}/arm_bones.cpp
   ${dir}/axes.cpp
   ${dir}/bvh.cpp
   ${dir}/clip/avi.cpp
   ${dir}/coded_view.cpp
   ${dir}/csv.cpp
-  ${dir}/draw_arm_region.cpp
-  ${dir}/draw_cloud.cpp
-  ${dir}/draw_disparity.cpp
-  ${dir}/draw_hue.cpp
-  ${dir}/draw_panels.cpp
   ${dir}/in_background.cpp
   ${dir}/json_lines.cpp
   ${dir}/osc.cpp

@@ -10,8 +10,9 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/file.h"
+#include "duoptic/paint.h"
 #include "duoptic/sink.h"
-#include "sinks/turbo.h"
+#include "paint/turbo.h"
 #include "tests/agree.h"
 
 namespace duo {

@@ -18,13 +18,13 @@ struct KeptFrame {
   double t_s = 0;
   Picture left;
   Frame frame;
-  std::vector<ArmPose> arms;
+  std::vector<Person> people;
   std::optional<TrackTimes> times;
 
   void keep(const TrackedFrame& from, bool pictures) {
     number = from.number;
     t_s = from.t_s;
-    arms = from.arms;
+    people.assign(from.people.begin(), from.people.end());
     times = from.times;
     left.t_ns = from.left.t_ns;
     left.sequence = from.left.sequence;
@@ -37,7 +37,7 @@ struct KeptFrame {
     copy(from.frame.disparity.d_q4, frame.disparity.d_q4);
     copy(from.frame.disparity.origin, frame.disparity.origin);
   }
-  TrackedFrame view() const { return {number, t_s, left, frame, arms, times}; }
+  TrackedFrame view() const { return {number, t_s, left, frame, people, times}; }
 
  private:
   template <class T>

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "duoptic/tracker.h"
+#include "duoptic/person.h"
 
 namespace duo {
 

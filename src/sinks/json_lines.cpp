@@ -12,7 +12,7 @@
 namespace duo {
 namespace {
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 /// Quoted; bytes that are no UTF-8 (names of files may be anything) become U+FFFD.
 std::string quoted(const std::string& text) {
@@ -25,39 +25,62 @@ double since_ms(TimeNs t_ns) {
   return static_cast<double>(std::chrono::nanoseconds(now).count() - t_ns) * 1e-6;
 }
 
+const char* side_text(Side side) {
+  constexpr const char* kSides[] = {"middle", "left", "right"};
+  return kSides[static_cast<int>(side)];
+}
+
+/// The joints in order, parents first.
+std::string skeleton_text(const Skeleton& skeleton) {
+  std::vector<std::string> joints;
+  for (const JointDef& joint : skeleton.joints) {
+    const std::string parent =
+        joint.parent < 0 ? "null" : fmt::format("\"{}\"", skeleton.joints[static_cast<std::size_t>(joint.parent)].name);
+    joints.push_back(fmt::format(R"({{"id":{},"name":"{}","parent":{},"side":"{}"}})", static_cast<int>(joint.id), joint.name,
+                                 parent, side_text(joint.side)));
+  }
+  return fmt::format(R"("{}":[{}])", skeleton.name, fmt::join(joints, ","));
+}
+
 std::string header_line(const TrackHeader& r) {
-  std::vector<std::string> rotation, sources;
+  std::vector<std::string> rotation, sources, skeletons;
   for (const double m : r.rectified.rig_from_left.m) rotation.push_back(number(m, 9));
   for (const std::string& source : r.sources) sources.push_back(quoted(source));
+  for (const Skeleton* skeleton : r.skeletons) skeletons.push_back(skeleton_text(*skeleton));
   return fmt::format(
       R"({{"type":"header","version":{},"units":{{"length":"m","time":"s","uv":"px of the raw left picture"}},)"
       R"("rig_from_left":[{}],"focal_px":{},"baseline_m":{},"sources":[{}],"engine":{},"device":{},"matcher":{},"matcher_preset":{},)"
-      R"("tracker":{},"tracker_preset":{},"width":{},"height":{},"frame_s":{}}})"
+      R"("tracker":{},"skeletons":{{{}}},"width":{},"height":{},"frame_s":{}}})"
       "\n",
       kVersion, fmt::join(rotation, ","), number(r.rectified.focal_px, 4), number(r.rectified.baseline_m, 6),
       fmt::join(sources, ","), quoted(r.engine), r.device.empty() ? "null" : quoted(r.device), quoted(r.matcher),
-      quoted(r.matcher_preset), quoted(r.tracker), quoted(r.tracker_preset), r.size.width, r.size.height, number(r.frame_s, 6));
+      quoted(r.matcher_preset), quoted(r.tracker), fmt::join(skeletons, ","), r.size.width, r.size.height,
+      number(r.frame_s, 6));
 }
 
-std::string joint_text(const Keypoint& k) {
-  const bool known = k.state != JointState::kLost;
-  const std::string p =
-      known ? fmt::format("[{},{},{}]", number(k.p_in_rig_m.x, 4), number(k.p_in_rig_m.y, 4), number(k.p_in_rig_m.z, 4))
-            : "null";
-  const std::string uv = known ? fmt::format("[{},{}]", number(k.u_px, 2), number(k.v_px, 2)) : "null";
+std::string text_of(const Joint& joint) {
+  const bool known = joint.state != JointState::kLost;
+  const Vec3 p_m = joint.p_in_rig_m;
+  const std::string p = known ? fmt::format("[{},{},{}]", number(p_m.x, 4), number(p_m.y, 4), number(p_m.z, 4)) : "null";
+  const std::string uv = known ? fmt::format("[{},{}]", number(joint.u_px, 2), number(joint.v_px, 2)) : "null";
   return fmt::format(R"({{"p_in_rig_m":{},"uv_left_px":{},"state":"{}","confidence":{},"sigma_m":{}}})", p, uv,
-                     state_text(k.state), number(k.confidence, 3), number(k.sigma_m, 4));
+                     state_text(joint.state), number(joint.confidence, 3), number(joint.sigma_m(), 4));
+}
+
+std::string text_of(const Person& person) {
+  std::vector<std::string> joints;
+  for (std::size_t j = 0; j < person.count(); ++j)
+    joints.push_back(fmt::format(R"("{}":{})", person.skeleton->joints[j].name, text_of(person.joints[j])));
+  return fmt::format(R"({{"id":{},"skeleton":"{}","joints":{{{}}}}})", person.id, person.skeleton->name,
+                     fmt::join(joints, ","));
 }
 
 std::string frame_line(const TrackedFrame& frame, bool live) {
+  std::vector<std::string> people;
+  for (const Person& person : frame.people) people.push_back(text_of(person));
   std::string line = fmt::format(R"({{"type":"frame","frame":{},"t_s":{})", frame.number, number(frame.t_s, 6));
   if (live) line += fmt::format(R"(,"skew_ms":{})", number(static_cast<double>(frame.frame.skew_ns) * 1e-6, 3));
-  for (std::size_t arm = 0; arm < frame.arms.size(); ++arm) {
-    line += arm == 0 ? R"(,"joints":{)" : R"(,"joints2":{)";
-    for (std::size_t j = 0; j < kArmJoints; ++j)
-      line += fmt::format(R"({}"{}":{})", j == 0 ? "" : ",", kJointNames[j], joint_text(frame.arms[arm].joints[j]));
-    line += "}";
-  }
+  line += fmt::format(R"(,"people":[{}])", fmt::join(people, ","));
   if (frame.times)
     line += fmt::format(R"(,"engine_ms":{},"tracker_ms":{})", number(frame.times->engine_ms, 3),
                         number(frame.times->tracker_ms, 3));

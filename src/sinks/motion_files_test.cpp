@@ -4,6 +4,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "body/bone_turns.h"
 #include "duoptic/sink.h"
 #include "tests/arm_poses.h"
 #include "tests/write_media.h"
@@ -32,24 +33,26 @@ TEST(Axes, TheSamePointByHand) {
 TEST(Csv, BytesByHand) {
   const test::TempFolder folder;
   Instant instant;
-  instant.arms = {arm_of({0.1, -0.25, 1.5}, {-0.00001, 0, 2}, {1, 2, 3})};
-  instant.arms[0][Joint::kElbow].state = JointState::kInferred;
-  instant.arms[0][Joint::kShoulder].state = JointState::kLost;
-  instant.arms.push_back(instant.arms[0]);
+  instant.people = {arm_of({0.1, -0.25, 1.5}, {-0.00001, 0, 2}, {1, 2, 3})};
+  instant.people[0].joints[kElbow].state = JointState::kInferred;
+  instant.people[0].joints[kShoulder].state = JointState::kLost;
+  instant.people.push_back(instant.people[0]);
+  instant.people[1].id = 7;
+  instant.people[1].skeleton = &kLeftArm;
   auto sink = make_csv(folder / "arm.csv", Axes::kRos);
   ASSERT_TRUE(sink) << sink.error().what;
   ASSERT_TRUE((*sink)->write(instant.tracked(57)));
-  instant.arms.clear();
+  instant.people.clear();
   ASSERT_TRUE((*sink)->write(instant.tracked(58)));
   EXPECT_FALSE(std::filesystem::exists(folder / "arm.csv"));
   ASSERT_TRUE((*sink)->finish());
-  const std::string cells =
-      "3.0000,-1.0000,-2.0000,seen,0.0125,0.900,2.0000,0.0000,0.0000,inferred,0.0125,0.900,,,,lost,0.0125,0.900\n";
+  const auto rows = [](const std::string& person, const std::string& side) {
+    const std::string start = "57,1.900000," + person + "," + side;
+    return start + "_shoulder,,,,lost,0.0125,0.900\n" + start + "_elbow,2.0000,0.0000,0.0000,inferred,0.0125,0.900\n" + start +
+           "_hand,3.0000,-1.0000,-2.0000,seen,0.0125,0.900\n";
+  };
   EXPECT_EQ(bytes_of(folder / "arm.csv"),
-            "frame,t_s,arm,hand_x_m,hand_y_m,hand_z_m,hand_state,hand_sigma_m,hand_confidence,elbow_x_m,elbow_y_m,elbow_z_m,"
-            "elbow_state,elbow_sigma_m,elbow_confidence,shoulder_x_m,shoulder_y_m,shoulder_z_m,shoulder_state,shoulder_sigma_m,"
-            "shoulder_confidence\n57,1.900000,1," +
-                cells + "57,1.900000,2," + cells);
+            "frame,t_s,person,joint,x_m,y_m,z_m,state,sigma_m,confidence\n" + rows("1", "right") + rows("7", "left"));
 }
 
 // --- BVH ------------------------------------------------------------------------------------------------------------------
@@ -140,17 +143,17 @@ struct BvhFile {
   std::istringstream in_;
 };
 
-Vec3 y_up(const ArmPose& arm, Joint which) { return axes_from_rig(Axes::kOpengl) * arm[which].p_in_rig_m; }
+Vec3 y_up(const Person& person, std::size_t j) { return axes_from_rig(Axes::kOpengl) * person.joints[j].p_in_rig_m; }
 
 TEST(Bvh, ForwardKinematicsGivesTheJointsBack) {
   const test::TempFolder folder;
   constexpr int kFrames = 200;
-  const auto right = wandering_arm(kFrames, 1), left = wandering_arm(kFrames, 2);
-  auto sink = make_bvh(folder / "arms.bvh", header_of(ArmSide::kRight));
+  const auto right = wandering_arm(kFrames, 1), left = wandering_arm(kFrames, 2, kLeftArm, 2);
+  auto sink = make_bvh(folder / "arms.bvh", {});
   ASSERT_TRUE(sink) << sink.error().what;
   Instant instant;
   for (std::size_t i = 0; i < kFrames; ++i) {
-    instant.arms = {right[i], left[i]};
+    instant.people = {right[i], left[i]};
     ASSERT_TRUE((*sink)->write(instant.tracked(static_cast<std::int64_t>(i))));
   }
   ASSERT_TRUE((*sink)->finish());
@@ -168,26 +171,26 @@ TEST(Bvh, ForwardKinematicsGivesTheJointsBack) {
   for (std::size_t i = 0; i < kFrames; ++i) {
     const std::vector<Vec3> places = bvh.places(i);
     for (std::size_t arm = 0; arm < 2; ++arm) {
-      const ArmPose& want = arm == 0 ? right[i] : left[i];
-      EXPECT_LT(norm(places[3 * arm] - y_up(want, Joint::kShoulder)), 1e-3) << i;
-      EXPECT_LT(norm(places[3 * arm + 1] - y_up(want, Joint::kElbow)), 1e-3) << i;
-      EXPECT_LT(norm(places[3 * arm + 2] - y_up(want, Joint::kHand)), 1e-3) << i;
+      const Person& want = arm == 0 ? right[i] : left[i];
+      EXPECT_LT(norm(places[3 * arm] - y_up(want, kShoulder)), 1e-3) << i;
+      EXPECT_LT(norm(places[3 * arm + 1] - y_up(want, kElbow)), 1e-3) << i;
+      EXPECT_LT(norm(places[3 * arm + 2] - y_up(want, kHand)), 1e-3) << i;
     }
   }
 }
 
 TEST(Bvh, LostAndLeftOutFramesHoldTheLastPose) {
   const test::TempFolder folder;
-  auto poses = wandering_arm(3, 3);
-  auto sink = make_bvh(folder / "arm.bvh", header_of(ArmSide::kLeft));
+  auto poses = wandering_arm(3, 3, kLeftArm);
+  auto sink = make_bvh(folder / "arm.bvh", {});
   ASSERT_TRUE(sink);
   Instant instant;
-  const auto write = [&](std::int64_t number, ArmPose pose) {
-    instant.arms = {pose};
+  const auto write = [&](std::int64_t number, const Person& pose) {
+    instant.people = {pose};
     ASSERT_TRUE((*sink)->write(instant.tracked(number)));
   };
-  ArmPose lost = poses[2];
-  lost[Joint::kHand].state = JointState::kLost;
+  Person lost = poses[2];
+  lost.joints[kHand].state = JointState::kLost;
   write(10, lost);  // before anything is known
   write(11, poses[0]);
   write(14, poses[1]);  // 12 and 13 were dropped
@@ -197,16 +200,50 @@ TEST(Bvh, LostAndLeftOutFramesHoldTheLastPose) {
   ASSERT_TRUE(bvh.good);
   ASSERT_EQ(bvh.frames.size(), 6u);
   for (const std::size_t i : {0, 1, 2, 3, 4, 5})
-    EXPECT_LT(norm(bvh.places(i)[2] - y_up(poses[i < 4 ? 0 : 1], Joint::kHand)), 1e-3) << i;
+    EXPECT_LT(norm(bvh.places(i)[2] - y_up(poses[i < 4 ? 0 : 1], kHand)), 1e-3) << i;
 }
 
 TEST(Bvh, NothingKnownIsStillAFile) {
   const test::TempFolder folder;
-  auto sink = make_bvh(folder / "arm.bvh", header_of(ArmSide::kLeft));
+  TrackHeader header;
+  header.skeletons = {&kLeftArm};
+  auto sink = make_bvh(folder / "arm.bvh", header);
   ASSERT_TRUE(sink);
   ASSERT_TRUE((*sink)->write(Instant{}.tracked(0)));
   ASSERT_TRUE((*sink)->finish());
-  EXPECT_TRUE(BvhFile(bytes_of(folder / "arm.bvh")).good);
+  const BvhFile bvh(bytes_of(folder / "arm.bvh"));
+  ASSERT_TRUE(bvh.good);
+  EXPECT_EQ(bvh.joints.size(), 3u);
+}
+
+/// By hand: a body in its T-pose has no turns, and lies in the file as it was; two of them have names of their own.
+TEST(Bvh, ABodyByWalkingItsTable) {
+  const test::TempFolder folder;
+  Person body = person_with(kBody);
+  for (std::size_t j = 0; j < kBody.joints.size(); ++j) {
+    const int parent = kBody.joints[j].parent;
+    const Vec3 from = parent < 0 ? Vec3{0, 0, 2} : body.joints[static_cast<std::size_t>(parent)].p_in_rig_m;
+    const Vec3 rest = parent < 0 ? Vec3{} : rest_direction(kBody.joints[j].id, BodyAxes::kRightHanded);
+    body.joints[j] = joint(from + 0.2 * (axes_from_rig(Axes::kOpengl) * rest));  // its own inverse
+  }
+  Instant instant;
+  instant.people = {body, body};
+  instant.people[1].id = 2;
+  auto sink = make_bvh(folder / "bodies.bvh", {});
+  ASSERT_TRUE(sink);
+  ASSERT_TRUE((*sink)->write(instant.tracked(0)));
+  ASSERT_TRUE((*sink)->finish());
+  const std::string text = bytes_of(folder / "bodies.bvh");
+  EXPECT_NE(text.find("ROOT Hips\n{\n\tOFFSET 0.000000 0.000000 0.000000\n\tCHANNELS 6 Xposition"), std::string::npos) << text;
+  EXPECT_NE(text.find("\tJOINT LeftUpLeg\n\t{\n\t\tOFFSET 0.200000 0.000000 0.000000\n"), std::string::npos);
+  EXPECT_NE(text.find("\t\tJOINT RightLeg_2\n\t\t{\n\t\t\tOFFSET 0.000000 -0.200000 0.000000\n"), std::string::npos);
+  const std::size_t motion = text.find("Frame Time:");
+  std::istringstream values(text.substr(text.find('\n', motion)));
+  std::vector<double> numbers;
+  for (double v = 0; values >> v;) numbers.push_back(v);
+  ASSERT_EQ(numbers.size(), 2 * (3 + 3 * kBody.joints.size()));
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    EXPECT_NEAR(numbers[i], i % (numbers.size() / 2) == 2 ? -2.0 : 0.0, 1e-6) << i;
 }
 
 }  // namespace

@@ -19,10 +19,10 @@ class Osc final : public Sink {
     lo_message_add_float(head, static_cast<float>(frame.t_s));
     lo_bundle_add_message(bundle.get(), "/duoptic/frame", head);
     std::vector<std::string> paths;  // liblo keeps the pointers until the bundle is sent
-    paths.reserve(2 * kArmJoints * frame.arms.size());
-    for (std::size_t arm = 0; arm < frame.arms.size(); ++arm)
-      for (std::size_t j = 0; j < kArmJoints; ++j)
-        add(frame.arms[arm].joints[j], fmt::format("/duoptic/arm/{}/{}", arm + 1, kJointNames[j]), paths, bundle);
+    paths.reserve(2 * Skeleton::kMostJoints * frame.people.size());
+    for (const Person& person : frame.people)
+      for (std::size_t j = 0; j < person.count(); ++j)
+        add(person.joints[j], fmt::format("/duoptic/person/{}/{}", person.id, person.skeleton->joints[j].name), paths, bundle);
     target_.send(bundle);
     return {};
   }
@@ -32,7 +32,7 @@ class Osc final : public Sink {
 
  private:
   /// Its place unless it is lost, and always its state: 2 seen, 1 inferred, 0 lost.
-  void add(const Keypoint& joint, const std::string& path, std::vector<std::string>& paths, const OscBundle& bundle) const {
+  void add(const Joint& joint, const std::string& path, std::vector<std::string>& paths, const OscBundle& bundle) const {
     if (joint.state != JointState::kLost) {
       const Vec3 p_m = axes_from_rig_ * joint.p_in_rig_m;
       lo_message place = lo_message_new();
@@ -41,7 +41,7 @@ class Osc final : public Sink {
     }
     lo_message state = lo_message_new();
     lo_message_add_int32(state, 2 - static_cast<int>(joint.state));
-    lo_message_add_float(state, static_cast<float>(joint.sigma_m));
+    lo_message_add_float(state, static_cast<float>(joint.sigma_m()));
     lo_message_add_float(state, static_cast<float>(joint.confidence));
     lo_bundle_add_message(bundle.get(), paths.emplace_back(path + "/state").c_str(), state);
   }

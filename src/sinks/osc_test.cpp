@@ -8,8 +8,8 @@
 #include <map>
 #include <mutex>
 
+#include "body/bone_turns.h"
 #include "duoptic/sink.h"
-#include "sinks/arm_bones.h"
 #include "tests/arm_poses.h"
 
 namespace duo {
@@ -65,8 +65,8 @@ TEST(Osc, AddressesAndValues) {
   auto sink = make_osc(receiver.target(), Axes::kUnity);
   ASSERT_TRUE(sink) << sink.error().what;
   Instant instant;
-  instant.arms = {arm_of({0.1, -0.25, 1.5}, {0, 0, 2}, {1, 2, 3}), {}};
-  instant.arms[0][Joint::kElbow].state = JointState::kInferred;
+  instant.people = {arm_of({0.1, -0.25, 1.5}, {0, 0, 2}, {1, 2, 3}), person_with(kLeftArm, 2)};
+  instant.people[0].joints[kElbow].state = JointState::kInferred;
   ASSERT_TRUE((*sink)->write(instant.tracked(57)));
   const auto got = receiver.next();
   std::map<std::string, Message> by_path;
@@ -75,14 +75,14 @@ TEST(Osc, AddressesAndValues) {
   ASSERT_EQ(by_path["/duoptic/frame"].types, "if");
   EXPECT_EQ(by_path["/duoptic/frame"].numbers[0], 57);
   EXPECT_NEAR(by_path["/duoptic/frame"].numbers[1], 1.9, 1e-6);
-  ASSERT_EQ(by_path["/duoptic/arm/1/hand"].types, "fff");
-  EXPECT_EQ(by_path["/duoptic/arm/1/hand"].numbers, (std::vector<double>{1, -2, 3}));
-  ASSERT_EQ(by_path["/duoptic/arm/1/hand/state"].types, "iff");
-  EXPECT_EQ(by_path["/duoptic/arm/1/hand/state"].numbers[0], 2);
-  EXPECT_NEAR(by_path["/duoptic/arm/1/hand/state"].numbers[1], 0.0125, 1e-6);
-  EXPECT_EQ(by_path["/duoptic/arm/1/elbow/state"].numbers[0], 1);
-  EXPECT_EQ(by_path["/duoptic/arm/2/shoulder/state"].numbers[0], 0);
-  EXPECT_EQ(by_path.count("/duoptic/arm/2/shoulder"), 0u);
+  ASSERT_EQ(by_path["/duoptic/person/1/right_hand"].types, "fff");
+  EXPECT_EQ(by_path["/duoptic/person/1/right_hand"].numbers, (std::vector<double>{1, -2, 3}));
+  ASSERT_EQ(by_path["/duoptic/person/1/right_hand/state"].types, "iff");
+  EXPECT_EQ(by_path["/duoptic/person/1/right_hand/state"].numbers[0], 2);
+  EXPECT_NEAR(by_path["/duoptic/person/1/right_hand/state"].numbers[1], 0.0125, 1e-6);
+  EXPECT_EQ(by_path["/duoptic/person/1/right_elbow/state"].numbers[0], 1);
+  EXPECT_EQ(by_path["/duoptic/person/2/left_shoulder/state"].numbers[0], 0);
+  EXPECT_EQ(by_path.count("/duoptic/person/2/left_shoulder"), 0u);
 }
 
 /// A quaternion x y z w turns a vector: the formula itself, in any axes.
@@ -93,17 +93,18 @@ Vec3 turned(const std::vector<double>& n, Vec3 v) {
 }
 
 TEST(Vmc, ARealReceiverGetsTheBones) {
-  for (const ArmSide side : {ArmSide::kRight, ArmSide::kLeft}) {
-    SCOPED_TRACE(side_name(side));
+  for (const Skeleton* skeleton : {&kRightArm, &kLeftArm}) {
+    SCOPED_TRACE(skeleton->name);
+    const bool left = skeleton == &kLeftArm;
     Receiver receiver;
-    auto sink = make_vmc(receiver.target(), header_of(side));
+    auto sink = make_vmc(receiver.target());
     ASSERT_TRUE(sink) << sink.error().what;
-    const std::string name(side_name(side));
-    const Vec3 rest{side == ArmSide::kLeft ? -1.0 : 1.0, 0, 0};  // Unity: the avatar looks along z, its left is -x
+    const std::string name = left ? "Left" : "Right";
+    const Vec3 rest{left ? -1.0 : 1.0, 0, 0};  // Unity: the avatar looks along z, its left is -x
     int number = 0;
-    for (const ArmPose& arm : wandering_arm(100, 4)) {
+    for (const Person& arm : wandering_arm(100, 4, *skeleton)) {
       Instant instant;
-      instant.arms = {arm};
+      instant.people = {arm};
       ASSERT_TRUE((*sink)->write(instant.tracked(number++)));
       const auto got = receiver.next();
       ASSERT_EQ(got.size(), 6u);
@@ -124,8 +125,8 @@ TEST(Vmc, ARealReceiverGetsTheBones) {
       const auto &upper = got[3].numbers, &lower = got[4].numbers, &hand = got[5].numbers;
       const Vec3 to_elbow = turned(upper, {lower[0], lower[1], lower[2]});
       const Vec3 to_hand = turned(upper, turned(lower, {hand[0], hand[1], hand[2]}));
-      EXPECT_LT(norm(to_elbow - avatar(arm[Joint::kElbow].p_in_rig_m - arm[Joint::kShoulder].p_in_rig_m)), 1e-5);
-      EXPECT_LT(norm(to_hand - avatar(arm[Joint::kHand].p_in_rig_m - arm[Joint::kElbow].p_in_rig_m)), 1e-5);
+      EXPECT_LT(norm(to_elbow - avatar(arm.joints[kElbow].p_in_rig_m - arm.joints[kShoulder].p_in_rig_m)), 1e-5);
+      EXPECT_LT(norm(to_hand - avatar(arm.joints[kHand].p_in_rig_m - arm.joints[kElbow].p_in_rig_m)), 1e-5);
       EXPECT_NEAR(lower[0], rest.x * kUpper_m, 1e-6);
       EXPECT_NEAR(hand[0], rest.x * kLower_m, 1e-6);
     }
@@ -135,11 +136,11 @@ TEST(Vmc, ARealReceiverGetsTheBones) {
 /// By hand: a right arm stretched out sideways with the forearm to the front is a T-pose but for the elbow's quarter turn.
 TEST(Vmc, ElbowBendsAroundItsHinge) {
   Receiver receiver;
-  auto sink = make_vmc(receiver.target(), header_of(ArmSide::kRight));
+  auto sink = make_vmc(receiver.target());
   ASSERT_TRUE(sink);
   Instant instant;
   // The person looks at the camera: the right arm goes to the picture's left, the front is where z is less.
-  instant.arms = {arm_of({0, 0, 2}, {-0.3, 0, 2}, {-0.3, 0, 1.75})};
+  instant.people = {arm_of({0, 0, 2}, {-0.3, 0, 2}, {-0.3, 0, 1.75})};
   ASSERT_TRUE((*sink)->write(instant.tracked(0)));
   auto got = receiver.next();
   ASSERT_EQ(got.size(), 6u);
@@ -150,18 +151,46 @@ TEST(Vmc, ElbowBendsAroundItsHinge) {
   expect(got[3], {0, 0, 0, 1});
   expect(got[4], {0, -h, 0, h});
   // Straight from there: the upper arm keeps its twist.
-  instant.arms = {arm_of({0, 0, 2}, {-0.3, 0, 2}, {-0.55, 0, 2})};
+  instant.people = {arm_of({0, 0, 2}, {-0.3, 0, 2}, {-0.55, 0, 2})};
   ASSERT_TRUE((*sink)->write(instant.tracked(1)));
   got = receiver.next();
   ASSERT_EQ(got.size(), 6u);
   expect(got[3], {0, 0, 0, 1});
   expect(got[4], {0, 0, 0, 1});
   // A lost joint: the avatar keeps its pose, and is told.
-  instant.arms[0][Joint::kHand].state = JointState::kLost;
+  instant.people[0].joints[kHand].state = JointState::kLost;
   ASSERT_TRUE((*sink)->write(instant.tracked(2)));
   got = receiver.next();
   ASSERT_EQ(got.size(), 3u);
   EXPECT_EQ(got[0].numbers[0], 0);
+}
+
+/// By hand: a body in its T-pose has no turns; its hands' centres are no bones, and of two bodies the first is sent.
+TEST(Vmc, ABodyByWalkingItsTable) {
+  Receiver receiver;
+  auto sink = make_vmc(receiver.target());
+  ASSERT_TRUE(sink);
+  Person body = person_with(kBody);
+  for (std::size_t j = 0; j < kBody.joints.size(); ++j) {
+    const int parent = kBody.joints[j].parent;
+    const Vec3 from = parent < 0 ? Vec3{0, 0, 2} : body.joints[static_cast<std::size_t>(parent)].p_in_rig_m;
+    const Vec3 rest = parent < 0 ? Vec3{} : rest_direction(kBody.joints[j].id, BodyAxes::kLeftHanded);
+    body.joints[j] = joint(from - 0.2 * rest);
+  }
+  Instant instant;
+  instant.people = {body, body};
+  instant.people[1].id = 2;
+  ASSERT_TRUE((*sink)->write(instant.tracked(0)));
+  const auto got = receiver.next();
+  ASSERT_EQ(got.size(), 3u + kJointIds - 2);
+  std::map<std::string, std::vector<double>> bones;
+  for (std::size_t i = 3; i < got.size(); ++i) bones[got[i].words[0]] = got[i].numbers;
+  EXPECT_EQ(bones.size(), kJointIds - 2);
+  for (const auto& [name, n] : bones) EXPECT_NEAR(n[6], 1, 1e-6) << name;
+  EXPECT_NEAR(bones["LeftLowerLeg"][1], -0.2, 1e-6);
+  EXPECT_NEAR(bones["LeftHand"][0], -0.2, 1e-6);
+  EXPECT_NEAR(bones["RightToes"][2], 0.2, 1e-6);
+  EXPECT_NEAR(bones["Hips"][1], 0, 1e-6);
 }
 
 TEST(Osc, TargetsThatCannotBe) {
@@ -171,7 +200,7 @@ TEST(Osc, TargetsThatCannotBe) {
     ASSERT_FALSE(sink) << target;
     EXPECT_NE(sink.error().what.find("HOST:PORT"), std::string::npos) << sink.error().what;
   }
-  const auto nowhere = make_vmc("no-such-host.invalid:39539", {});
+  const auto nowhere = make_vmc("no-such-host.invalid:39539");
   ASSERT_FALSE(nowhere);
   EXPECT_NE(nowhere.error().what.find("no-such-host.invalid"), std::string::npos) << nowhere.error().what;
 }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "duoptic/paint.h"
 #include "duoptic/sink.h"
-#include "sinks/panels.h"
 #include "sinks/video_writer.h"
 
 namespace duo {

@@ -7,7 +7,7 @@
 #include "core/check.h"
 #include "core/file.h"
 #include "duoptic/sink.h"
-#include "sinks/point.h"
+#include "core/point.h"
 
 namespace duo {
 

@@ -1,10 +1,13 @@
 // Virtual Motion Capture protocol, performer to marionette: https://protocol.vmc.info
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+#include <string_view>
 #include <utility>
 
+#include "body/bone_turns.h"
 #include "duoptic/sink.h"
-#include "sinks/arm_bones.h"
 #include "sinks/osc_target.h"
 
 namespace duo {
@@ -12,26 +15,36 @@ namespace {
 
 /// Unity's axes (left-handed, y up) of an avatar that looks along z, as the person looks towards the cameras: -1 times the
 /// rig frame in every direction.
-Vec3 avatar_from_rig(Vec3 p_in_rig) { return -1.0 * p_in_rig; }
+constexpr Mat3 kAvatarFromRig = {{-1, 0, 0, 0, -1, 0, 0, 0, -1}};
+
+/// Unity's HumanBodyBones by the joint at which each begins. A hand's centre begins no bone: it stands for the wrist of a
+/// skeleton without one.
+constexpr std::array<std::string_view, kJointIds> kHumanoidBones = {
+    "Hips",         "Spine",    "Chest",         "Neck",          "Head",          "LeftUpperArm", "LeftLowerArm",
+    "LeftHand",     "LeftHand", "RightUpperArm", "RightLowerArm", "RightHand",     "RightHand",    "LeftUpperLeg",
+    "LeftLowerLeg", "LeftFoot", "LeftToes",      "RightUpperLeg", "RightLowerLeg", "RightFoot",    "RightToes"};
+
+std::string_view bone_of(const JointDef& joint) { return kHumanoidBones[static_cast<std::size_t>(joint.id)]; }
 
 class Vmc final : public Sink {
  public:
-  Vmc(OscTarget target, ArmSide first_arm) : target_(std::move(target)), first_arm_(first_arm) {}
+  explicit Vmc(OscTarget target) : target_(std::move(target)) {}
 
   Result<void> write(const TrackedFrame& frame) override {
     const OscBundle bundle = new_bundle();
-    bool known = false;
-    for (const ArmPose& arm : frame.arms) known |= is_known(arm);
     lo_message ok = lo_message_new(), time = lo_message_new();
-    lo_message_add_int32(ok, known ? 1 : 0);
-    lo_message_add_float(time, static_cast<float>(frame.t_s));
     lo_bundle_add_message(bundle.get(), "/VMC/Ext/OK", ok);
+    lo_message_add_float(time, static_cast<float>(frame.t_s));
     lo_bundle_add_message(bundle.get(), "/VMC/Ext/T", time);
     add_transform(bundle, "/VMC/Ext/Root/Pos", "root", {}, Mat3{});
-    for (std::size_t arm = 0; arm < frame.arms.size(); ++arm) {
-      while (turners_.size() <= arm) turners_.emplace_back(rest_x(side_of(first_arm_, turners_.size()), true));
-      if (is_known(frame.arms[arm])) add_arm(bundle, frame.arms[arm], side_of(first_arm_, arm), turners_[arm]);
+    bool known = false;
+    for (std::size_t i = 0; i < frame.people.size(); ++i) {
+      const Person& person = frame.people[i];
+      const auto same = [&](const Person& other) { return other.skeleton == person.skeleton; };
+      if (std::none_of(frame.people.begin(), frame.people.begin() + static_cast<std::ptrdiff_t>(i), same))
+        known |= add_person(bundle, person);
     }
+    lo_message_add_int32(ok, known ? 1 : 0);
     target_.send(bundle);
     return {};
   }
@@ -40,48 +53,45 @@ class Vmc final : public Sink {
   Result<void> finish() override { return {}; }
 
  private:
-  static bool is_known(const ArmPose& arm) {
-    for (const Keypoint& joint : arm.joints)
-      if (joint.state == JointState::kLost) return false;
-    return true;
-  }
-
   /// Position in the parent bone (metres), rotation from the T-pose in the parent's axes.
-  static void add_transform(const OscBundle& bundle, const char* path, const std::string& name, Vec3 p_m,
-                            const Mat3& rotation) {
+  static void add_transform(const OscBundle& bundle, const char* path, const char* name, Vec3 p_m, const Mat3& rotation) {
     lo_message message = lo_message_new();
-    lo_message_add_string(message, name.c_str());
+    lo_message_add_string(message, name);
     for (const double v_m : {p_m.x, p_m.y, p_m.z}) lo_message_add_float(message, static_cast<float>(v_m));
     for (const double q : quaternion(rotation)) lo_message_add_float(message, static_cast<float>(q));
     lo_bundle_add_message(bundle.get(), path, message);
   }
 
-  static void add_arm(const OscBundle& bundle, const ArmPose& arm, ArmSide side, ArmTurner& turner) {
-    const Vec3 shoulder = avatar_from_rig(arm[Joint::kShoulder].p_in_rig_m),
-               elbow = avatar_from_rig(arm[Joint::kElbow].p_in_rig_m), hand = avatar_from_rig(arm[Joint::kHand].p_in_rig_m);
-    const auto turns = turner.turn(shoulder, elbow, hand);
-    if (!turns) return;
-    const double x = rest_x(side, true);
-    const std::string name(side_name(side));
-    const auto bone = [&](const char* part, double length_m, const Mat3& rotation) {
-      add_transform(bundle, "/VMC/Ext/Bone/Pos", name + part, {x * length_m, 0, 0}, rotation);
-    };
-    // The avatar's own shoulder is where its arm begins: the person's place in the room is OSC's to tell.
-    bone("UpperArm", 0, turns->upper);
-    bone("LowerArm", norm(elbow - shoulder), turns->lower);
-    bone("Hand", norm(hand - elbow), Mat3{});
+  /// Whether its joints are known; those of an unknown one keep the avatar's pose.
+  bool add_person(const OscBundle& bundle, const Person& person) {
+    const auto places = known_places(person, kAvatarFromRig);
+    if (!places) return false;
+    auto& turner = turners_.try_emplace({person.id, person.skeleton}, *person.skeleton, BodyAxes::kLeftHanded).first->second;
+    const auto turns = turner.turn(*places);
+    if (!turns) return true;
+    for (std::size_t j = 0; j < places->size(); ++j) {
+      const JointDef& joint = person.skeleton->joints[j];
+      // The avatar's own root is where its bones begin: the person's place in the room is OSC's to tell.
+      Vec3 p_m;
+      if (joint.parent >= 0) {
+        const auto parent = static_cast<std::size_t>(joint.parent);
+        if (bone_of(joint) == bone_of(person.skeleton->joints[parent])) continue;
+        p_m = norm((*places)[j] - (*places)[parent]) * rest_direction(joint.id, BodyAxes::kLeftHanded);
+      }
+      add_transform(bundle, "/VMC/Ext/Bone/Pos", bone_of(joint).data(), p_m, (*turns)[j]);
+    }
+    return true;
   }
 
   OscTarget target_;
-  ArmSide first_arm_;
-  std::vector<ArmTurner> turners_;
+  std::map<std::pair<std::uint32_t, const Skeleton*>, BoneTurner> turners_;  // by the person's id; it may be selected anew
 };
 
 }  // namespace
 
-Result<std::unique_ptr<Sink>> make_vmc(const std::string& target, const TrackHeader& header) {
+Result<std::unique_ptr<Sink>> make_vmc(const std::string& target) {
   DUO_TRY_ASSIGN(OscTarget opened, OscTarget::open(target));
-  return std::unique_ptr<Sink>(std::make_unique<Vmc>(std::move(opened), header.first_arm));
+  return std::unique_ptr<Sink>(std::make_unique<Vmc>(std::move(opened)));
 }
 
 }  // namespace duo

@@ -78,10 +78,11 @@ void expect_same_joints(const nlohmann::json& want, const nlohmann::json& got, d
     EXPECT_EQ(want, got);
     return;
   }
-  ASSERT_EQ(want["joints"].size(), 3u);
-  for (const auto& [name, joint] : want["joints"].items()) {
-    const auto &at = joint["p_in_rig_m"], &found = got["joints"][name]["p_in_rig_m"];
-    EXPECT_EQ(joint["state"], got["joints"][name]["state"]) << want;
+  const auto &wanted = want["people"][0]["joints"], &given = got["people"][0]["joints"];
+  ASSERT_EQ(wanted.size(), 3u);
+  for (const auto& [name, joint] : wanted.items()) {
+    const auto &at = joint["p_in_rig_m"], &found = given[name]["p_in_rig_m"];
+    EXPECT_EQ(joint["state"], given[name]["state"]) << want;
     ASSERT_EQ(at.size(), found.size());
     for (std::size_t i = 0; i < at.size(); ++i) EXPECT_NEAR(at[i].get<double>(), found[i].get<double>(), within_m) << want;
   }
@@ -99,7 +100,7 @@ std::string without_progress(const std::string& said) {
 TEST_F(Devices, TrackLikeTheCpu) {
   const std::string track = make_clip();
   for (const bool points : {false, true}) {
-    const char* preset = points ? " --preset thesis --tracker-preset thesis" : " --preset default";
+    const char* preset = points ? " --preset thesis --tracker thesis" : " --preset default";
     const test::Ended cpu = run(track + preset + " --engine simd"), device = run(track + preset + kDevice);
     ASSERT_EQ(cpu.exit, 0) << cpu.err;
     ASSERT_EQ(device.exit, 0) << device.err;

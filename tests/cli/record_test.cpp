@@ -171,7 +171,7 @@ TEST_F(Record, SeveralSinksAtOnceOrNone) {
                         "--axes unity --arm left --quiet");
   EXPECT_EQ(all.exit, 0) << all.err;
   const std::string table = bytes_of(at("a.csv"));
-  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + kPairs);
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + 3 * kPairs);
   EXPECT_EQ(table, bytes_of(at("b.csv")));
   EXPECT_NE(bytes_of(at("a.bvh")).find("ROOT LeftArm"), std::string::npos);
   expect_failure(track + "-o c.jsonl --csv c.csv --osc nowhere", kInput, "HOST:PORT");

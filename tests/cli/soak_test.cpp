@@ -25,7 +25,7 @@ std::vector<std::string> clicks(Size size) {
   std::vector<std::string> out;
   for (const SyntheticJoint& joint : clip->frame(0).joints)
     for (const char* name : {"hand", "elbow", "shoulder"})
-      if (joint.name == side + name)
+      if (name_of(joint.id) == side + name)
         out.insert(out.end(), {"--select", name + ("=" + std::to_string((*joint.uv_left_px)[0])) + "," +
                                                std::to_string((*joint.uv_left_px)[1])});
   return out;

@@ -99,8 +99,12 @@ TEST_F(Track, HeaderThenALineAFrame) {
   for (std::size_t i = 1; i < all.size(); ++i) {
     EXPECT_EQ(all[i]["frame"], i + 1);  // the first two are skipped
     EXPECT_NEAR(all[i]["t_s"], static_cast<double>(i + 1) / 30, 1e-3);
-    for (const char* joint : {"hand", "elbow", "shoulder"}) {
-      const auto& j = all[i]["joints"][joint];
+    ASSERT_EQ(all[i]["people"].size(), 1u);
+    const auto& person = all[i]["people"][0];
+    EXPECT_EQ(person["id"], 1);
+    EXPECT_EQ(person["skeleton"], "right_arm");
+    for (const char* joint : {"right_hand", "right_elbow", "right_shoulder"}) {
+      const auto& j = person["joints"][joint];
       EXPECT_EQ(j["p_in_rig_m"].is_null(), j["state"] == "lost") << j;
       EXPECT_TRUE(j.contains("uv_left_px") && j.contains("confidence") && j.contains("sigma_m")) << j;
     }
@@ -121,6 +125,23 @@ TEST_F(Track, TheSameBytesWhateverTheThreads) {
   EXPECT_EQ(one.out, three.out);
   EXPECT_EQ(run(arguments + "-o b.jsonl --quiet").out, "");
   EXPECT_EQ(bytes_of(at("b.jsonl")), one.out);
+}
+
+/// Two arms by naming both sides' joints; --arm says whose a plain name is.
+TEST_F(Track, ArmsByTheNamesOfTheirJoints) {
+  const std::string track = "track left.mp4 right.mp4 --rig rig.json";
+  const Ended plain = run(track + kSelect + "--arm left");
+  ASSERT_EQ(plain.exit, 0) << plain.err;
+  const std::string left = " --select left_shoulder=160,54 --select left_hand=160,100 --select left_elbow=160,77";
+  EXPECT_EQ(run(track + left).out, plain.out);
+  const std::string right = " --select right_hand=190,100 --select right_elbow=190,77 --select right_shoulder=190,54";
+  const Ended both = run(track + left + right);
+  ASSERT_EQ(both.exit, 0) << both.err;
+  const auto people = lines(both.out)[1]["people"];
+  ASSERT_EQ(people.size(), 2u);
+  EXPECT_EQ(people[0]["skeleton"], "left_arm");
+  EXPECT_EQ(people[1]["skeleton"], "right_arm");
+  EXPECT_EQ(people[1]["id"], 2);
 }
 
 TEST_F(Track, TimesOnlyWhenAsked) {
@@ -152,13 +173,14 @@ TEST_F(Track, BadSelections) {
   const std::string pair = "track left.mp4 right.mp4 --rig rig.json ";
   const std::string rest = " --select elbow=160,77 --select shoulder=160,54";
   expect_failure(pair, kUsage, "--select");
-  expect_failure(pair + "--select hand=160,100 --select elbow=160,77", kUsage, "shoulder is missing");
-  expect_failure(pair + "--select hand=1,1 --select hand=2,2" + rest, kUsage, "hand is given twice");
+  expect_failure(pair + "--select hand=160,100 --select elbow=160,77", kUsage, "right_shoulder is missing");
+  expect_failure(pair + "--select hand=1,1 --select hand=2,2" + rest, kUsage, "right_hand is given twice");
   for (const char* bad :
        {"hand", "hand=", "hand=5", "hand=5,", "hand=,5", "hand=a,b", "hand=nan,1", "hand=1e999,1", "hand=1,2,3", "="})
     expect_failure(pair + "--select " + bad + rest, kUsage, "is not JOINT=X,Y");
-  expect_failure(pair + "--select foot=1,1" + rest, kUsage, "no joint 'foot'; there are: hand, elbow, shoulder");
-  expect_failure(pair + kSelect + "--select2 hand=5,5", kUsage, "elbow is missing");
+  expect_failure(pair + "--select foot=1,1" + rest, kUsage, "no joint 'foot'; there are: right_shoulder, right_elbow, ");
+  expect_failure(pair + kSelect + "--select left_hand=5,5", kUsage, "left_shoulder is missing");
+  expect_failure(pair + kSelect + "--select right_hand=5,5", kUsage, "right_hand is given twice");
   for (const char* outside : {"hand=320,10", "hand=-1,10", "hand=10,240", "hand=1e9,-1e9"})
     expect_failure(pair + "--select " + outside + rest, kInput, "outside");
   expect_failure("track blank.mp4 blank.mp4 --rig rig.json" + std::string(kSelect), kInput, "depth");
@@ -172,7 +194,7 @@ TEST_F(Track, BadInputs) {
   expect_failure("track left.mp4 right.mp4 --rig none.json" + select, kInput, "none.json");
   expect_failure("track left.mp4 right.mp4 --rig other.json" + select, kInput, "640x480");
   expect_failure("track left.mp4 none.mp4 --rig rig.json" + select, kInput, "none.mp4");
-  expect_failure("track left.mp4 right.mp4 --rig rig.json --tracker-preset best" + select, kUsage, "best");
+  expect_failure("track left.mp4 right.mp4 --rig rig.json --tracker best" + select, kUsage, "best");
 }
 
 TEST_F(Track, BadOutputs) {
@@ -214,8 +236,16 @@ TEST_F(Track, EvalClipAgainstATruthFile) {
   EXPECT_EQ(clip["first_frame"], 1);  // the hand is hidden in frame 0
   EXPECT_EQ(clip["frames"], kPairs - 1);
   EXPECT_TRUE(clip["depth"].is_null());
-  EXPECT_TRUE(clip["joints"]["hand"]["hidden_median_mm"].is_null());
-  EXPECT_GT(clip["joints"]["hand"]["median_mm"], 100.0);  // the wall is not where this truth has the hand
+  EXPECT_TRUE(clip["joints"]["left_hand"]["hidden_median_mm"].is_null());
+  EXPECT_GT(clip["joints"]["left_hand"]["median_mm"], 100.0);  // the wall is not where this truth has the hand
+
+  // Any joint by its name, of both arms too.
+  const Ended one = run("eval clip clip --json --joints left_elbow");
+  ASSERT_EQ(one.exit, 0) << one.err;
+  const auto elbow = nlohmann::json::parse(one.out, nullptr, false)["clips"][0]["joints"];
+  EXPECT_EQ(elbow.size(), 1u);
+  EXPECT_EQ(elbow["left_elbow"], clip["joints"]["left_elbow"]);
+  EXPECT_EQ(run("eval clip clip --joints elbow").exit, kUsage);
 
   const auto fails = [&](const std::string& folder, const std::string& words) {
     const Ended bad = run("eval clip " + folder);
@@ -224,6 +254,7 @@ TEST_F(Track, EvalClipAgainstATruthFile) {
     EXPECT_NE(bad.err.find(words), std::string::npos) << bad.err;
   };
   fails("nowhere", "nowhere");
+  fails("clip --joints right_hand", "frame 0 of its truth.json has no right_hand");
   truth["frames"].push_back(truth["frames"][0]);
   put(at("clip/truth.json"), truth.dump());
   fails("clip", "its videos end before frame 6 of 7");

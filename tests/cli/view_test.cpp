@@ -12,6 +12,7 @@
 #include <sstream>
 #include <thread>
 
+#include "duoptic/paint.h"
 #include "duoptic/rig.h"
 #include "duoptic/sink.h"
 #include "duoptic/source.h"
@@ -191,7 +192,8 @@ class Running : public ViewWindow {
   int screenshots_ = 0;
 };
 
-/// Hand, elbow and shoulder of the arm that moves.
+constexpr const char* kJoints[] = {"hand", "elbow", "shoulder"};
+/// The same, of the arm that moves.
 using Arm = std::array<SyntheticJoint, 3>;
 
 Arm arm_of(SyntheticClip& person, int frame) {
@@ -199,7 +201,7 @@ Arm arm_of(SyntheticClip& person, int frame) {
   Arm arm;
   for (const SyntheticJoint& joint : person.frame(frame).joints)
     for (std::size_t j = 0; j < 3; ++j)
-      if (joint.name == side + std::string(kJointNames[j])) arm[j] = joint;
+      if (name_of(joint.id) == side + kJoints[j]) arm[j] = joint;
   return arm;
 }
 
@@ -221,9 +223,10 @@ bool same_picture(View<const Rgb8> a, View<const Rgb8> b) {
 void expect_panels(View<const Rgb8> window) {
   EXPECT_GT(near(window, 280, 230, 264, kBox), 200);
   EXPECT_GT(near(window, 280, 230, 264, kBone), 100);
-  EXPECT_GT(hues_in(window.crop(40, 570, {520, 380})), 5u);                                  // depth
-  EXPECT_GT(hues_in(window.crop(560, 760, {320, 200})), 5u);                                 // hue
-  for (const Rgb8 shade : kJointShades) EXPECT_GT(near(window, 550, 810, 180, shade), 100);  // arm region, and its legend
+  EXPECT_GT(hues_in(window.crop(40, 570, {520, 380})), 5u);   // depth
+  EXPECT_GT(hues_in(window.crop(560, 760, {320, 200})), 5u);  // hue
+  for (const JointDef& joint : kRightArm.joints)
+    EXPECT_GT(near(window, 550, 810, 180, shade_of(joint.id)), 100);  // body, and its legend
 }
 
 /// A box around each joint of the line, and two bones between them.
@@ -231,14 +234,15 @@ void expect_skeleton(View<const Rgb8> window, const nlohmann::json& line) {
   double uv[3][2];
   for (std::size_t j = 0; j < 3; ++j)
     for (std::size_t i = 0; i < 2; ++i)
-      uv[j][i] = window_px(line["joints"][std::string(kJointNames[j])]["uv_left_px"][i], i, kPersonSize.width);
+      uv[j][i] =
+          window_px(line["people"][0]["joints"][std::string("right_") + kJoints[j]]["uv_left_px"][i], i, kPersonSize.width);
   for (std::size_t j = 0; j < 3; ++j) {
-    SCOPED_TRACE(kJointNames[j]);
+    SCOPED_TRACE(kJoints[j]);
     EXPECT_GT(near(window, uv[j][0], uv[j][1], 4, kBox), 5);
     EXPECT_GT(near(window, uv[j][0], uv[j][1], 30, kBox), 60);
   }
   for (std::size_t j = 0; j < 2; ++j) {
-    SCOPED_TRACE(kJointNames[j]);
+    SCOPED_TRACE(kJoints[j]);
     EXPECT_GT(near(window, (uv[j][0] + uv[j + 1][0]) / 2, (uv[j][1] + uv[j + 1][1]) / 2, 4, kBone), 5);
   }
 }
@@ -250,7 +254,7 @@ double farthest_m(const nlohmann::json& line, const nlohmann::json& header, Synt
   const Arm truth = arm_of(person, clip_frame_of(line["frame"]));
   double farthest = 0;
   for (std::size_t j = 0; j < 3; ++j) {
-    const auto& joint = line["joints"][std::string(kJointNames[j])];
+    const auto& joint = line["people"][0]["joints"][std::string("right_") + kJoints[j]];
     if (joint["state"] == "lost") return 1e3;
     const auto& p = joint["p_in_rig_m"];
     farthest = std::max(farthest, norm(Vec3{p[0], p[1], p[2]} - rig_from_left * truth[j].p_in_left_m));
@@ -332,8 +336,8 @@ TEST_F(Running, BothArmsOfAStillPicture) {
   std::getline(lines, line);
   const auto frame = nlohmann::json::parse(line, nullptr, false);
   EXPECT_EQ(frame["frame"], 0) << line;
-  EXPECT_EQ(frame["joints"].size(), 3u) << line;
-  EXPECT_EQ(frame["joints2"].size(), 3u) << line;
+  ASSERT_EQ(frame["people"].size(), 2u) << line;
+  EXPECT_EQ(frame["people"][1]["joints"].size(), 3u) << line;
 }
 
 TEST_F(Running, AnInterruptCompletesTheLines) {

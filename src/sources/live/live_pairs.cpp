@@ -22,7 +22,7 @@ class LivePairs final : public PairSource {
   LivePairs(std::unique_ptr<Source> left, std::unique_ptr<Source> right)
       : sources_{std::move(left), std::move(right)},
         pairing_(std::min(sources_[0]->frame_s(), sources_[1]->frame_s())),
-        threads_{std::thread([this] { run(Side::kLeft); }), std::thread([this] { run(Side::kRight); })} {}
+        threads_{std::thread([this] { run(CameraSide::kLeft); }), std::thread([this] { run(CameraSide::kRight); })} {}
   ~LivePairs() override {
     stopped_ = true;
     for (std::thread& thread : threads_) thread.join();
@@ -55,7 +55,7 @@ class LivePairs final : public PairSource {
   }
 
  private:
-  void run(Side side) {
+  void run(CameraSide side) {
     Source& source = *sources_[static_cast<std::size_t>(side)];
     Picture picture;
     while (!stopped_) {

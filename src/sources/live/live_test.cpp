@@ -60,7 +60,7 @@ Picture taken_at(double ms, std::uint64_t n = 0) {
 
 TEST(Pairs, TheNearestWithinHalfAFrameAndEachOnce) {
   Pairing pairing(1.0 / 30);
-  const auto add = [&](Side side, double ms) {
+  const auto add = [&](CameraSide side, double ms) {
     Picture picture = taken_at(ms);
     pairing.add(side, picture);
   };
@@ -71,22 +71,22 @@ TEST(Pairs, TheNearestWithinHalfAFrameAndEachOnce) {
     EXPECT_EQ(pair.left.t_ns, std::llround(left_ms * 1e6));
     EXPECT_EQ(pair.right.t_ns, std::llround(right_ms * 1e6));
   };
-  add(Side::kLeft, 0);
-  add(Side::kLeft, 33.3);
+  add(CameraSide::kLeft, 0);
+  add(CameraSide::kLeft, 33.3);
   EXPECT_FALSE(pairing.ready());
-  add(Side::kRight, 23.3);  // nearer to the second
+  add(CameraSide::kRight, 23.3);  // nearer to the second
   expect_pair(33.3, 23.3);
   EXPECT_EQ(pairing.lonely(), 1);
-  add(Side::kRight, 56.6);
-  add(Side::kLeft, 66.6);
-  add(Side::kRight, 90);
-  add(Side::kLeft, 100);  // nobody took the pair before
+  add(CameraSide::kRight, 56.6);
+  add(CameraSide::kLeft, 66.6);
+  add(CameraSide::kRight, 90);
+  add(CameraSide::kLeft, 100);  // nobody took the pair before
   expect_pair(100, 90);
   EXPECT_EQ(pairing.dropped(), 1);
   EXPECT_EQ(pair.sequence, 2u);
-  for (int i = 0; i < 10; ++i) add(Side::kLeft, 133 + 33.3 * i);  // the right camera is away
+  for (int i = 0; i < 10; ++i) add(CameraSide::kLeft, 133 + 33.3 * i);  // the right camera is away
   EXPECT_FALSE(pairing.ready());
-  add(Side::kRight, 440);
+  add(CameraSide::kRight, 440);
   expect_pair(133 + 33.3 * 9, 440);
 }
 

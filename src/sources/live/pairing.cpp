@@ -19,7 +19,7 @@ constexpr std::size_t kMostWaiting = 4;
 
 Pairing::Pairing(double frame_s) : limit_ns_(std::llround(kLimitFrames * frame_s * 1e9)) {}
 
-void Pairing::add(Side side, Picture& picture) {
+void Pairing::add(CameraSide side, Picture& picture) {
   auto& waiting = waiting_[static_cast<std::size_t>(side)];
   waiting.push_back(std::move(picture));
   match();

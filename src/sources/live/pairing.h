@@ -10,7 +10,7 @@
 
 namespace duo {
 
-enum class Side : std::uint8_t { kLeft, kRight };
+enum class CameraSide : std::uint8_t { kLeft, kRight };
 
 /// Takes the pictures of two cameras as they come and pairs each with the nearest of the other, when that lies within half a
 /// frame: a nearer one cannot follow. Each picture is used once. The newest pair wins: one that nobody took counts as dropped.
@@ -22,7 +22,7 @@ class Pairing {
   explicit Pairing(double frame_s);
 
   /// Takes the picture's content and gives memory to fill again in exchange.
-  void add(Side side, Picture& picture);
+  void add(CameraSide side, Picture& picture);
   bool ready() const { return ready_; }
   /// The newest pair; there must be one.
   void take(Pair& into);

@@ -39,29 +39,29 @@ Staging stage(const SyntheticClipSetup& setup, double scale) {
 }
 
 struct NamedJoint {
-  const char* name;
+  JointId id;
   Vec3 p_in_person_m;
 };
 
-std::vector<NamedJoint> joints_of(const Skeleton& bones) {
+std::vector<NamedJoint> joints_of(const Bones& bones) {
   const auto &l = bones.arms[kLeftSide], &r = bones.arms[kRightSide], &ll = bones.legs[kLeftSide], &rl = bones.legs[kRightSide];
-  return {{"left_shoulder", l.root_m},
-          {"left_elbow", l.middle_m},
-          {"left_wrist", l.end_m},
-          {"left_hand", bones.hands_m[kLeftSide]},
-          {"left_hip", ll.root_m},
-          {"left_knee", ll.middle_m},
-          {"left_ankle", ll.end_m},
-          {"right_shoulder", r.root_m},
-          {"right_elbow", r.middle_m},
-          {"right_wrist", r.end_m},
-          {"right_hand", bones.hands_m[kRightSide]},
-          {"right_hip", rl.root_m},
-          {"right_knee", rl.middle_m},
-          {"right_ankle", rl.end_m},
-          {"head", bones.head_m},
-          {"neck", bones.neck_m},
-          {"pelvis", bones.pelvis_m}};
+  return {{JointId::kLeftShoulder, l.root_m},
+          {JointId::kLeftElbow, l.middle_m},
+          {JointId::kLeftWrist, l.end_m},
+          {JointId::kLeftHand, bones.hands_m[kLeftSide]},
+          {JointId::kLeftHip, ll.root_m},
+          {JointId::kLeftKnee, ll.middle_m},
+          {JointId::kLeftAnkle, ll.end_m},
+          {JointId::kRightShoulder, r.root_m},
+          {JointId::kRightElbow, r.middle_m},
+          {JointId::kRightWrist, r.end_m},
+          {JointId::kRightHand, bones.hands_m[kRightSide]},
+          {JointId::kRightHip, rl.root_m},
+          {JointId::kRightKnee, rl.middle_m},
+          {JointId::kRightAnkle, rl.end_m},
+          {JointId::kHead, bones.head_m},
+          {JointId::kNeck, bones.neck_m},
+          {JointId::kPelvis, bones.pelvis_m}};
 }
 
 // A joint in one camera.
@@ -88,8 +88,6 @@ Seen look_at(Vec3 p_in_world, const Camera& camera, const Rigid3& world_from_cam
   out.visible = out.in && (p.z - std::min(room_z, figure_z)) * norm(ray.direction) <= tolerance_m;
   return out;
 }
-
-std::string without_side(const std::string& joint) { return joint.substr(joint.find('_') + 1); }
 
 }  // namespace
 
@@ -122,9 +120,9 @@ struct SyntheticClip::State {
     if (setup.frames == 0) setup.frames = static_cast<int>(std::lround(script.length_s() * kFramesPerSecond));
   }
 
-  Skeleton skeleton(const Script::Moment& moment) const { return make_skeleton(moment.pose, looks.scale); }
+  Bones skeleton(const Script::Moment& moment) const { return make_bones(moment.pose, looks.scale); }
 
-  Scene figure(const Skeleton& bones, const Lamps& lamps) const {
+  Scene figure(const Bones& bones, const Lamps& lamps) const {
     Scene scene;
     add_figure(scene, staging.world_from_person, bones, looks);
     light_like(room, lamps, scene);
@@ -136,23 +134,23 @@ struct SyntheticClip::State {
   struct Shot {
     Script::Moment moment;
     Lamps lamps;
-    Skeleton bones;
+    Bones bones;
     Scene figure;
   };
   Shot shot(double t_s) const {
     const Script::Moment moment = script.at(t_s);
     const Lamps lamps{moment.lamp};
-    const Skeleton bones = skeleton(moment);
+    const Bones bones = skeleton(moment);
     return {moment, lamps, bones, figure(bones, lamps)};
   }
 
   SyntheticJoint joint(const NamedJoint& named, const Shot& shot, const NamedJoint& right_named, const Shot& right_shot) const {
     const auto in_world = [&](const NamedJoint& j) { return staging.world_from_person * j.p_in_person_m; };
     const Vec3 p = in_world(named);
-    const double tolerance = tolerance_m(named.name);
+    const double tolerance = tolerance_m(named.id);
     const Seen l = look_at(p, rig.left, world_from_left, room, shot.figure, tolerance),
                r = look_at(in_world(right_named), rig.right, world_from_right, room, right_shot.figure, tolerance);
-    return {named.name, inverse(world_from_left) * p, l.uv_px, r.uv_px, l.in, r.in, l.visible, r.visible, l.surface_z_m};
+    return {named.id, inverse(world_from_left) * p, l.uv_px, r.uv_px, l.in, r.in, l.visible, r.visible, l.surface_z_m};
   }
 };
 
@@ -222,12 +220,12 @@ SyntheticClip::Pinhole SyntheticClip::pinhole(int index) {
   return out;
 }
 
-double SyntheticClip::tolerance_m(const std::string& joint) {
+double SyntheticClip::tolerance_m(JointId joint) {
   constexpr std::pair<const char*, double> kTolerances[] = {
       {"shoulder", 0.14}, {"elbow", 0.1},  {"wrist", 0.065}, {"hand", 0.06}, {"hip", 0.17},
       {"knee", 0.1},      {"ankle", 0.09}, {"head", 0.16},   {"neck", 0.1},  {"pelvis", 0.18}};
-  for (const auto& [name, tolerance] : kTolerances)
-    if (without_side(joint) == name) return tolerance;
+  for (const auto& [part, tolerance] : kTolerances)
+    if (part_of(joint) == part) return tolerance;
   DUO_CHECK(false);
   return 0;
 }

@@ -34,7 +34,7 @@ SyntheticClip open(const std::string& script, std::uint32_t seed, Size size, int
 
 const SyntheticJoint& joint(const SyntheticClipFrame& frame, const std::string& name) {
   for (const SyntheticJoint& j : frame.joints)
-    if (j.name == name) return j;
+    if (name_of(j.id) == name) return j;
   ADD_FAILURE() << name;
   return frame.joints.front();
 }
@@ -84,7 +84,7 @@ TEST(SyntheticBlend, SeamIsSoftAndFarLobesChangeNothing) {
 TEST(SyntheticBlend, NothingIsSkipped) {
   Scene scene;
   const Script script(acts_of("reach"), kRightSide, 1);
-  add_figure(scene, {}, make_skeleton(script.at(1.2).pose, 1), looks_of(1));
+  add_figure(scene, {}, make_bones(script.at(1.2).pose, 1), looks_of(1));
   scene.ready();
   Random random(3);
   int hits = 0;
@@ -146,11 +146,11 @@ TEST(SyntheticPerson, TruthAgreesWithLensAndDepth) {
         if (!inside) continue;
         // Between pixel centres a round thing (the tip of the nose) can stand out by a part of the relief around.
         const float slack = 0.001F + 0.25F * (high - low);
-        EXPECT_GT(*j.surface_z_left_m, low - slack) << j.name << " frame " << i;
-        EXPECT_LT(*j.surface_z_left_m, high + slack) << j.name << " frame " << i;
+        EXPECT_GT(*j.surface_z_left_m, low - slack) << name_of(j.id) << " frame " << i;
+        EXPECT_LT(*j.surface_z_left_m, high + slack) << name_of(j.id) << " frame " << i;
         if (j.visible_left) {
           ++visible;
-          EXPECT_LT(*j.surface_z_left_m, j.p_in_left_m.z + 1e-6) << j.name << ": a joint lies inside the body";
+          EXPECT_LT(*j.surface_z_left_m, j.p_in_left_m.z + 1e-6) << name_of(j.id) << ": a joint lies inside the body";
         }
       }
     }
@@ -185,7 +185,7 @@ TEST(SyntheticPerson, BonesKeepTheirLengths) {
   for (const std::string& name : act_names()) {
     const Script script(acts_of(name), kLeftSide, 5);
     for (double t = 0; t < script.length_s(); t += 0.05) {
-      const Skeleton bones = make_skeleton(script.at(t).pose, 1.02);
+      const Bones bones = make_bones(script.at(t).pose, 1.02);
       for (const Limb& arm : bones.arms) {
         EXPECT_NEAR(norm(arm.middle_m - arm.root_m), 1.02 * kUpperArm_m, 1e-12);
         EXPECT_NEAR(norm(arm.end_m - arm.middle_m), 1.02 * kForearm_m, 1e-12);
@@ -201,7 +201,7 @@ TEST(SyntheticPerson, MovesSmoothly) {
   const Script script(acts_of("tour"), kRightSide, 1);
   Vec3 before;
   for (int i = 0; i < script.length_s() * 30; ++i) {
-    const Vec3 hand = make_skeleton(script.at(i / 30.0).pose, 1).hands_m[kRightSide];
+    const Vec3 hand = make_bones(script.at(i / 30.0).pose, 1).hands_m[kRightSide];
     if (i > 0) {
       EXPECT_LT(norm(hand - before) * 30, 4) << i;
     }

@@ -80,7 +80,7 @@ struct Rest {
 struct Dresser {
   Scene& scene;
   const Rigid3& world_from_person;
-  const Skeleton& bones;
+  const Bones& bones;
   const Looks& looks;
   Rest rest{bones.scale};
 
@@ -213,7 +213,7 @@ struct Dresser {
 
 }  // namespace
 
-void add_figure(Scene& scene, const Rigid3& world_from_person, const Skeleton& skeleton, const Looks& looks) {
+void add_figure(Scene& scene, const Rigid3& world_from_person, const Bones& skeleton, const Looks& looks) {
   const Dresser dresser{scene, world_from_person, skeleton, looks};
   dresser.head(scene.add(looks.face));
   dresser.hair(scene.add(looks.hair));

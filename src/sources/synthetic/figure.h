@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "sources/synthetic/scene.h"
-#include "sources/synthetic/skeleton.h"
+#include "sources/synthetic/bones.h"
 
 namespace duo::synthetic {
 
@@ -19,6 +19,6 @@ struct Looks {
 Looks looks_of(std::uint32_t seed);
 
 /// Adds the person's shapes to a scene.
-void add_figure(Scene& scene, const Rigid3& world_from_person, const Skeleton& skeleton, const Looks& looks);
+void add_figure(Scene& scene, const Rigid3& world_from_person, const Bones& bones, const Looks& looks);
 
 }  // namespace duo::synthetic

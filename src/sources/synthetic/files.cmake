@@ -17,7 +17,7 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/script.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/shading.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/shapes.cpp
-  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/skeleton.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/bones.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/synthetic.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/textures.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/webcam.cpp)

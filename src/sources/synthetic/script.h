@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sources/synthetic/skeleton.h"
+#include "sources/synthetic/bones.h"
 
 namespace duo::synthetic {
 

@@ -41,8 +41,8 @@ Arm::Arm(const Grid& grid, double frame_s)
   others_.reserve(kMostOthers);
 }
 
-const TrackedJoint& Arm::joint(Joint which) const {
-  return which == Joint::kHand ? hand_ : which == Joint::kElbow ? elbow_ : shoulder_;
+const TrackedJoint& Arm::joint(Part which) const {
+  return which == Part::kHand ? hand_ : which == Part::kElbow ? elbow_ : shoulder_;
 }
 
 void Arm::track(const Scene& scene, std::span<const Vec3> rivals) {

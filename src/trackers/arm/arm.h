@@ -10,6 +10,7 @@
 #include "duoptic/tracker.h"
 #include "trackers/arm/bones.h"
 #include "trackers/arm/hand.h"
+#include "trackers/arm/raw_left.h"
 #include "trackers/arm/torso.h"
 
 namespace duo::arm {
@@ -37,14 +38,16 @@ class Arm {
  public:
   Arm(const Grid& grid, double frame_s);
 
-  /// Learns the arm from clicks on the rectified picture, in full pixels: hand, elbow, shoulder.
+  /// Learns the arm from clicks on the rectified picture, in full pixels.
+  ///
+  /// `arm` names the joints in messages.
   ///
   /// Errors  no depth near a click, clicks that span no arm, no surface around the hand
-  Result<void> start(const Scene& scene, std::span<const Vec2, kArmJoints> clicks_px);
+  Result<void> start(const Scene& scene, const Skeleton& arm, std::span<const Vec2, kParts> clicks_px);
   /// `rivals`: hands of other tracked arms.
   void track(const Scene& scene, std::span<const Vec3> rivals);
 
-  const TrackedJoint& joint(Joint which) const;
+  const TrackedJoint& joint(Part which) const;
 
  private:
   struct Prediction {

@@ -27,26 +27,34 @@ std::ostream& operator<<(std::ostream& out, const Limits& l) { return out << l.c
 
 struct Truth {
   Vec3 p_in_left_m;
-  ArmSelection::Click left_px;
+  Click left_px;
   bool visible = false;
 };
-using TrueArm = std::array<Truth, kArmJoints>;
-using TrueArms = std::array<TrueArm, 2>;  // the clip's own arm first
+constexpr std::size_t kJoints = 3;  // of an arm, in the order of its skeleton
+using TrueArm = std::array<Truth, kJoints>;
+/// The clip's own arm first.
+struct TrueArms {
+  std::array<const Skeleton*, 2> skeletons;
+  std::array<TrueArm, 2> arms;
+};
 
 std::vector<TrueArms> read_truth(const fs::path& path) {
   std::ifstream file(path);
   const auto json = nlohmann::json::parse(file);
-  const std::string own = json["meta"]["selected_arm"], other = own == "left" ? "right" : "left";
+  const bool left = json["meta"]["selected_arm"] == "left";
   std::vector<TrueArms> out;
   for (const auto& frame : json["frames"]) {
-    TrueArms& arms = out.emplace_back();
-    for (std::size_t a = 0; a < arms.size(); ++a)
-      for (std::size_t j = 0; j < kArmJoints; ++j) {
-        const auto& joint = frame["joints"][(a == 0 ? own : other) + "_" + std::string(kJointNames[j])];
-        Truth& truth = arms[a][j];
+    TrueArms& truth_of = out.emplace_back();
+    truth_of.skeletons = {left ? &kLeftArm : &kRightArm, left ? &kRightArm : &kLeftArm};
+    for (std::size_t a = 0; a < truth_of.arms.size(); ++a)
+      for (std::size_t j = 0; j < kJoints; ++j) {
+        const JointDef& def = truth_of.skeletons[a]->joints[j];
+        const auto& joint = frame["joints"][std::string(def.name)];
+        Truth& truth = truth_of.arms[a][j];
         truth.p_in_left_m = {joint["xyz"][0], joint["xyz"][1], joint["xyz"][2]};
         truth.visible = joint["vis_left"] && joint["vis_right"];
-        if (joint["in_left"]) truth.left_px = {joint["uv_left"][0], joint["uv_left"][1]};
+        truth.left_px.joint = def.id;
+        if (joint["in_left"]) truth.left_px = {def.id, joint["uv_left"][0], joint["uv_left"][1]};
       }
   }
   return out;
@@ -55,7 +63,12 @@ std::vector<TrueArms> read_truth(const fs::path& path) {
 bool all_visible(const TrueArm& arm) {
   return std::all_of(arm.begin(), arm.end(), [](const Truth& t) { return t.visible; });
 }
-ArmSelection clicks_on(const TrueArm& arm) { return {{arm[0].left_px, arm[1].left_px, arm[2].left_px}}; }
+std::vector<Selection> clicks_on(const TrueArms& truth, std::size_t arms) {
+  std::vector<Selection> out;
+  for (std::size_t a = 0; a < arms; ++a)
+    out.push_back({truth.skeletons[a], {truth.arms[a][0].left_px, truth.arms[a][1].left_px, truth.arms[a][2].left_px}});
+  return out;
+}
 
 /// A clip from its first frame with the whole arm (of the first `arms` arms) visible.
 class Clip {
@@ -73,8 +86,7 @@ class Clip {
     truth_ = read_truth(folder / "truth.json");
     return {};
   }
-  /// Calls start(frame, truth) on the first frame and then each(frame, truth) on every one, that one included, at most
-  /// `most_frames` times.
+  /// Calls start(frame, truth) on the first frame and each(frame, truth) on every later one, `most_frames` in all.
   template <class Start, class Each>
   void run(std::size_t arms, int most_frames, Start&& start, Each&& each) {
     bool started = false;
@@ -82,17 +94,20 @@ class Clip {
     for (const TrueArms& truth : truth_) {
       const auto next = pairs_->next(pair);
       ASSERT_TRUE(next && *next == Next::kPicture);
-      if (!started && !std::all_of(truth.begin(), truth.begin() + static_cast<std::ptrdiff_t>(arms), all_visible)) continue;
+      if (!started && !std::all_of(truth.arms.begin(), truth.arms.begin() + static_cast<std::ptrdiff_t>(arms), all_visible))
+        continue;
       engine_->submit(pair);
       const Frame& frame = engine_->collect();
-      if (!std::exchange(started, true)) start(frame, truth);
-      each(frame, truth);
+      if (std::exchange(started, true))
+        each(frame, truth);
+      else
+        start(frame, truth);
       if (testing::Test::HasFatalFailure() || --most_frames == 0) return;
     }
     EXPECT_TRUE(started);
   }
-  std::unique_ptr<Tracker> tracker(const char* preset = "default") const {
-    auto out = std::move(*make_tracker("arm", preset));
+  std::unique_ptr<Tracker> tracker(const char* name = "arm") const {
+    auto out = std::move(*make_tracker(name));
     const auto prepared = out->prepare({rig, geometry(), 1.0 / 30});
     EXPECT_TRUE(prepared) << prepared.error().what;
     return out;
@@ -127,14 +142,14 @@ struct Scores {
   std::vector<double> errors_m;  // over visible frames
   int lost = 0, seen = 0, within = 0;
 
-  void add(const Keypoint& joint, Vec3 truth) {
+  void add(const Joint& joint, Vec3 truth) {
     constexpr double kLostM = 0.1;
     const double error_m = joint.state == JointState::kLost ? 10 : norm(joint.p_in_rig_m - truth);
     errors_m.push_back(error_m);
     lost += error_m > kLostM;
     if (joint.state == JointState::kLost) return;
     ++seen;
-    within += error_m < 3 * joint.sigma_m;
+    within += error_m < 3 * joint.sigma_m();
   }
   double median_mm() {
     std::nth_element(errors_m.begin(), errors_m.begin() + static_cast<std::ptrdiff_t>(errors_m.size() / 2), errors_m.end());
@@ -146,15 +161,15 @@ struct Scores {
 
 class ArmScores {
  public:
-  void add(const ArmPose& pose, const TrueArm& truth, const Mat3& rig_from_left) {
+  void add(const Person& person, const TrueArm& truth, const Mat3& rig_from_left) {
     for (std::size_t j = 0; j < truth.size(); ++j)
-      if (truth[j].visible) joints_[j].add(pose.joints[j], rig_from_left * truth[j].p_in_left_m);
+      if (truth[j].visible) joints_[j].add(person.joints[j], rig_from_left * truth[j].p_in_left_m);
   }
   void expect_within(const Limits& limits) {
-    const std::array<double, kArmJoints> most_mm = {limits.hand_mm, 35, 35};
-    const std::array<double, kArmJoints> most_lost = {limits.hand_lost, limits.elbow_lost, limits.hand_lost};
+    const std::array<double, kJoints> most_mm = {35, 35, limits.hand_mm};
+    const std::array<double, kJoints> most_lost = {limits.hand_lost, limits.elbow_lost, limits.hand_lost};
     for (std::size_t j = 0; j < joints_.size(); ++j) {
-      const std::string name(kJointNames[j]);
+      const std::string name(part_of(kRightArm.joints[j].id));
       const double median_mm = joints_[j].median_mm();
       std::printf("%s %s: median %.1f mm, lost %.1f %%, within 3 sigma %.1f %%\n", limits.clip, name.c_str(), median_mm,
                   100 * joints_[j].lost_share(), 100 * joints_[j].within_share());
@@ -163,15 +178,16 @@ class ArmScores {
       EXPECT_GE(joints_[j].within_share(), 0.95) << name;
     }
   }
-  Scores& operator[](Joint joint) { return joints_[static_cast<std::size_t>(joint)]; }
+  Scores& hand() { return joints_[2]; }
 
  private:
-  std::array<Scores, kArmJoints> joints_;
+  std::array<Scores, kJoints> joints_;
 };
 
-void select(Tracker& tracker, const Frame& frame, const std::vector<ArmSelection>& arms) {
-  const auto selected = tracker.select(frame, arms);
-  ASSERT_TRUE(selected) << selected.error().what;
+std::span<const Person> select(Tracker& tracker, const Frame& frame, const TrueArms& truth, std::size_t arms) {
+  const auto selected = tracker.select(frame, clicks_on(truth, arms));
+  EXPECT_TRUE(selected) << selected.error().what;
+  return selected ? *selected : std::span<const Person>();
 }
 
 // Two trackers see the same frames: the second must give the same bits. Memory is counted around the first.
@@ -182,29 +198,29 @@ TEST_P(Clips, AccurateHonestAndRepeatable) {
   clip_.run(
       1, kAllFrames,
       [&](const Frame& frame, const TrueArms& truth) {
-        for (Tracker* tracker : {first.get(), second.get()}) select(*tracker, frame, {clicks_on(truth[0])});
+        for (Tracker* tracker : {first.get(), second.get()}) ASSERT_EQ(select(*tracker, frame, truth, 1).size(), 1U);
       },
       [&](const Frame& frame, const TrueArms& truth) {
         const long before = test::allocations;
-        const ArmPose& pose = first->track(frame)[0];
+        const Person& person = first->track(frame)[0];
         allocated += test::allocations - before;
-        const ArmPose& again = second->track(frame)[0];
-        for (std::size_t j = 0; j < kArmJoints; ++j) {
-          ASSERT_EQ(pose.joints[j].p_in_rig_m, again.joints[j].p_in_rig_m) << frame.sequence;
-          ASSERT_EQ(pose.joints[j].sigma_m, again.joints[j].sigma_m) << frame.sequence;
+        const Person& again = second->track(frame)[0];
+        for (std::size_t j = 0; j < kJoints; ++j) {
+          ASSERT_EQ(person.joints[j].p_in_rig_m, again.joints[j].p_in_rig_m) << frame.sequence;
+          ASSERT_EQ(person.joints[j].sigma_m(), again.joints[j].sigma_m()) << frame.sequence;
         }
-        scores.add(pose, truth[0], clip_.geometry().rig_from_left);
+        scores.add(person, truth.arms[0], clip_.geometry().rig_from_left);
       });
   EXPECT_EQ(allocated, 0);
   scores.expect_within(GetParam());
 }
 
 // Blobs are lost and looked for again, and SIFT finds as many points as it likes: none of that asks for memory.
-TEST_P(Clips, ThesisPresetDoesNotAllocate) {
+TEST_P(Clips, ThesisTrackerDoesNotAllocate) {
   const auto tracker = clip_.tracker("thesis");
   long allocated = 0;
   clip_.run(
-      1, 40, [&](const Frame& frame, const TrueArms& truth) { select(*tracker, frame, {clicks_on(truth[0])}); },
+      1, 40, [&](const Frame& frame, const TrueArms& truth) { ASSERT_EQ(select(*tracker, frame, truth, 1).size(), 1U); },
       [&](const Frame& frame, const TrueArms&) {
         const long before = test::allocations;
         tracker->track(frame);
@@ -226,18 +242,15 @@ void Clips::expect_both_arms(double resting_hand_mm) {
   const auto tracker = clip_.tracker();
   std::array<ArmScores, 2> scores;
   clip_.run(
-      2, 60,
+      2, 60, [&](const Frame& frame, const TrueArms& truth) { ASSERT_EQ(select(*tracker, frame, truth, 2).size(), 2U); },
       [&](const Frame& frame, const TrueArms& truth) {
-        select(*tracker, frame, {clicks_on(truth[0]), clicks_on(truth[1])});
-      },
-      [&](const Frame& frame, const TrueArms& truth) {
-        const auto& poses = tracker->track(frame);
-        ASSERT_EQ(poses.size(), 2U);
-        for (std::size_t a = 0; a < poses.size(); ++a) scores[a].add(poses[a], truth[a], clip_.geometry().rig_from_left);
+        const auto people = tracker->track(frame);
+        ASSERT_EQ(people.size(), 2U);
+        for (std::size_t a = 0; a < people.size(); ++a) scores[a].add(people[a], truth.arms[a], clip_.geometry().rig_from_left);
       });
   scores[0].expect_within(GetParam());
-  EXPECT_LE(scores[1][Joint::kHand].median_mm(), resting_hand_mm);
-  EXPECT_LE(scores[1][Joint::kHand].lost_share(), 0.02);
+  EXPECT_LE(scores[1].hand().median_mm(), resting_hand_mm);
+  EXPECT_LE(scores[1].hand().lost_share(), 0.02);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rendered, Clips,

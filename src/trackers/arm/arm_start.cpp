@@ -9,11 +9,11 @@
 namespace duo::arm {
 namespace {
 
-Error no_depth(Joint joint) {
+Error no_depth(const Skeleton& arm, Part part) {
+  const JointDef& joint = arm.joints[index_of(part)];
   return {ErrorCode::kBadInput,
-          fmt::format("select the arm: no depth near the {} click; click on a textured part of the {}, or "
-                      "choose another frame",
-                      kJointNames[static_cast<std::size_t>(joint)], kJointNames[static_cast<std::size_t>(joint)])};
+          fmt::format("select the arm: no depth near the {} click; click on a textured part of the {}, or choose another frame",
+                      joint.name, part_of(joint.id))};
 }
 
 /// Depth of a small disc; an arm is narrow, so what is near counts more.
@@ -54,16 +54,16 @@ std::optional<Vec3> shoulder_at(const Grid& grid, Vec2 at, double depth_m, std::
   return behind(grid.camera.point(at, *wanted), depth_m);
 }
 
-Result<void> Arm::start(const Scene& scene, std::span<const Vec2, kArmJoints> clicks_px) {
+Result<void> Arm::start(const Scene& scene, const Skeleton& arm, std::span<const Vec2, kParts> clicks_px) {
   const Grid& grid = scene.grid;
   depths_m_.reserve(static_cast<std::size_t>(grid.size()));
-  std::array<Vec2, kArmJoints> at;
-  for (std::size_t i = 0; i < at.size(); ++i) at[i] = Pinhole::coarse(clicks_px[i], grid.step);
-  const auto hand = limb_at(grid, at[0], params_.hand_depth_m), elbow = limb_at(grid, at[1], params_.elbow_depth_m),
-             shoulder = shoulder_at(grid, at[2], params_.shoulder_depth_m, depths_m_);
-  if (!hand) return no_depth(Joint::kHand);
-  if (!elbow) return no_depth(Joint::kElbow);
-  if (!shoulder) return no_depth(Joint::kShoulder);
+  const auto at = [&](Part part) { return Pinhole::coarse(clicks_px[index_of(part)], grid.step); };
+  const auto hand = limb_at(grid, at(Part::kHand), params_.hand_depth_m),
+             elbow = limb_at(grid, at(Part::kElbow), params_.elbow_depth_m),
+             shoulder = shoulder_at(grid, at(Part::kShoulder), params_.shoulder_depth_m, depths_m_);
+  if (!hand) return no_depth(arm, Part::kHand);
+  if (!elbow) return no_depth(arm, Part::kElbow);
+  if (!shoulder) return no_depth(arm, Part::kShoulder);
   hand_.p = *hand;
   elbow_.p = *elbow;
   shoulder_.p = *shoulder;

@@ -1,7 +1,5 @@
 #include "trackers/arm/arm_tracker.h"
 
-#include <utility>
-
 #include "core/check.h"
 #include "trackers/arm/arm.h"
 #include "trackers/arm/raw_left.h"
@@ -9,15 +7,16 @@
 namespace duo {
 namespace {
 
-using arm::kMostArms;
+using arm::kMostArms, arm::Part, arm::index_of;
 
 class ArmTracker final : public Tracker {
  public:
   const char* name() const override { return "arm"; }
+  std::span<const Skeleton* const> skeletons() const override { return arm::kArms; }
   Wants wants() const override { return {.color = true}; }
   Result<void> prepare(const TrackerSetup& setup) override;
-  Result<void> select(const Frame& frame, const std::vector<ArmSelection>& selections) override;
-  const std::vector<ArmPose>& track(const Frame& frame) override;
+  Result<std::span<const Person>> select(const Frame& frame, std::span<const Selection> selections) override;
+  std::span<const Person> track(const Frame& frame) override;
   void reset() override;
 
  private:
@@ -28,9 +27,7 @@ class ArmTracker final : public Tracker {
   arm::Grid grid_;
   arm::GrayLevels gray_;
   std::vector<arm::Arm> arms_;
-  std::vector<ArmPose> poses_;
-  std::uint64_t selected_on_ = 0;  // sequence number: the first track() may be given the same frame
-  bool just_selected_ = false;
+  std::vector<Person> people_;  // of arms_
 };
 
 Result<void> ArmTracker::prepare(const TrackerSetup& setup) {
@@ -43,35 +40,32 @@ Result<void> ArmTracker::prepare(const TrackerSetup& setup) {
   return {};
 }
 
-Result<void> ArmTracker::select(const Frame& frame, const std::vector<ArmSelection>& selections) {
+Result<std::span<const Person>> ArmTracker::select(const Frame& frame, std::span<const Selection> selections) {
   DUO_CHECK(view_.has_value());
   DUO_TRY(view_->check(frame, selections.size()));
   grid_.build(frame);
   gray_.build(frame);
   std::vector<arm::Arm> arms;
-  for (std::size_t n = 0; n < selections.size(); ++n) {
-    DUO_TRY_ASSIGN(const auto clicks, view_->rectified(selections[n]));
+  for (const Selection& selection : selections) {
+    DUO_TRY_ASSIGN(const auto clicks, view_->rectified(selection));
     arms.emplace_back(grid_, frame_s_);
-    DUO_TRY(arms.back().start({grid_, gray_}, clicks));
+    DUO_TRY(arms.back().start({grid_, gray_}, *selection.skeleton, clicks));
   }
   arms_ = std::move(arms);
-  poses_.assign(arms_.size(), {});
-  selected_on_ = frame.sequence;
-  just_selected_ = true;
+  people_ = arm::persons_of(selections);
   publish();
-  return {};
+  return std::span<const Person>(people_);
 }
 
-const std::vector<ArmPose>& ArmTracker::track(const Frame& frame) {
-  if (arms_.empty()) return poses_;
-  if (std::exchange(just_selected_, false) && frame.sequence == selected_on_) return poses_;
+std::span<const Person> ArmTracker::track(const Frame& frame) {
+  if (arms_.empty()) return people_;
   grid_.build(frame);
   gray_.build(frame);
   // Both arms see the other's hand where it was, so that their order does not matter.
   std::array<Vec3, kMostArms> hands;
   std::array<bool, kMostArms> seen;
   for (std::size_t n = 0; n < arms_.size(); ++n) {
-    const arm::TrackedJoint& hand = arms_[n].joint(Joint::kHand);
+    const arm::TrackedJoint& hand = arms_[n].joint(Part::kHand);
     hands[n] = hand.p + hand.step;
     seen[n] = hand.seen();
   }
@@ -82,22 +76,28 @@ const std::vector<ArmPose>& ArmTracker::track(const Frame& frame) {
     arms_[n].track({grid_, gray_, skew_s}, rival ? std::span<const Vec3>(&hands[other], 1) : std::span<const Vec3>());
   }
   publish();
-  return poses_;
+  return people_;
 }
 
 void ArmTracker::reset() {
   arms_.clear();
-  poses_.clear();
+  people_.clear();
 }
 
 void ArmTracker::publish() {
-  for (std::size_t n = 0; n < arms_.size(); ++n)
-    for (const Joint which : {Joint::kHand, Joint::kElbow, Joint::kShoulder}) {
-      const arm::TrackedJoint& joint = arms_[n].joint(which);
-      Keypoint& out = poses_[n][which];
-      out = {joint.p, joint.sigma_m, joint.confidence, out.u_px, out.v_px, joint.state};
+  for (std::size_t n = 0; n < arms_.size(); ++n) {
+    for (const Part part : {Part::kShoulder, Part::kElbow, Part::kHand}) {
+      const arm::TrackedJoint& joint = arms_[n].joint(part);
+      Joint& out = people_[n].joints[index_of(part)];
+      out.p_in_rig_m = joint.p;
+      out.v_in_rig_m_s = (1 / frame_s_) * joint.step;
+      out.cov_m2 = Covariance3::isotropic(joint.sigma_m);
+      out.confidence = joint.confidence;
+      out.state = joint.state;
       view_->set_pixel(out);
     }
+    people_[n].sum_up();
+  }
 }
 
 }  // namespace

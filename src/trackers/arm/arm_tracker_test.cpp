@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/lens.h"
+
 namespace duo {
 namespace {
 
@@ -24,8 +26,14 @@ class BadInput : public testing::Test {
       for (int x = 0; x < kSize.width; ++x) frame_.disparity.d_q4.at(y, x) = x < 80 ? Disparity::kNone : 15 * 16;
     ASSERT_TRUE(tracker_->prepare(setup_));
   }
-  std::string select(ArmSelection::Click hand, ArmSelection::Click elbow, ArmSelection::Click shoulder) {
-    const auto result = tracker_->select(frame_, {{{hand, elbow, shoulder}}});
+  std::string select(Vec2 hand, Vec2 elbow, Vec2 shoulder) {
+    return select({&kLeftArm,
+                   {{JointId::kLeftHand, hand.x, hand.y},
+                    {JointId::kLeftElbow, elbow.x, elbow.y},
+                    {JointId::kLeftShoulder, shoulder.x, shoulder.y}}});
+  }
+  std::string select(const Selection& selection) {
+    const auto result = tracker_->select(frame_, {&selection, 1});
     return result ? "" : result.error().what;
   }
   static constexpr Size kSize{320, 240};
@@ -37,11 +45,17 @@ class BadInput : public testing::Test {
 #define EXPECT_SAYS(text, part) EXPECT_NE(std::string(text).find(part), std::string::npos) << (text)
 
 TEST_F(BadInput, ClicksAreNamed) {
-  EXPECT_SAYS(select({-5, 100}, {150, 100}, {200, 100}), "the hand click (-5, 100) lies outside the picture of 320x240");
-  EXPECT_SAYS(select({120, 100}, {150, 400}, {200, 100}), "the elbow click");
-  EXPECT_SAYS(select({20, 100}, {150, 100}, {200, 100}), "no depth near the hand click");
-  EXPECT_SAYS(select({120, 100}, {150, 100}, {20, 100}), "no depth near the shoulder click");
+  EXPECT_SAYS(select({-5, 100}, {150, 100}, {200, 100}), "the left_hand click (-5, 100) lies outside the picture of 320x240");
+  EXPECT_SAYS(select({120, 100}, {150, 400}, {200, 100}), "the left_elbow click");
+  EXPECT_SAYS(select({20, 100}, {150, 100}, {200, 100}), "no depth near the left_hand click");
+  EXPECT_SAYS(select({120, 100}, {150, 100}, {20, 100}), "no depth near the left_shoulder click");
   EXPECT_SAYS(select({100, 100}, {310, 100}, {280, 100}), "elbow and hand lie 1.4");
+}
+
+TEST_F(BadInput, SkeletonsAndMissingClicks) {
+  EXPECT_SAYS(select({&kBody, {}}), "another skeleton than right_arm or left_arm");
+  EXPECT_SAYS(select({&kRightArm, {{JointId::kRightHand, 100, 100}, {JointId::kRightElbow, 150, 100}}}),
+              "no click on the right_shoulder");
 }
 
 TEST_F(BadInput, FrameAndArms) {
@@ -56,7 +70,10 @@ TEST_F(BadInput, FailedSelectKeepsTheArmsAndResetForgetsThem) {
   EXPECT_EQ(tracker_->track(frame_).size(), 1U);
   EXPECT_NE(select({20, 100}, {150, 100}, {200, 100}), "");
   EXPECT_EQ(tracker_->track(frame_).size(), 1U);
-  EXPECT_EQ(tracker_->track(frame_)[0][Joint::kElbow].u_px > 0, true);
+  const Person& person = tracker_->track(frame_)[0];
+  EXPECT_EQ(person.skeleton, &kLeftArm);
+  EXPECT_EQ(person.id, 1u);
+  EXPECT_GT(person.find(JointId::kLeftElbow)->u_px, 0);
   tracker_->reset();
   EXPECT_TRUE(tracker_->track(frame_).empty());
 }
@@ -68,10 +85,21 @@ TEST_F(BadInput, Setup) {
   EXPECT_SAYS(tracker_->prepare(setup_).error().what, "0x0");
 }
 
-TEST(MakeTracker, NamesAndPresets) {
-  EXPECT_TRUE(make_tracker("arm", "default"));
-  EXPECT_SAYS(make_tracker("leg", "default").error().what, "choose one of: arm");
-  EXPECT_SAYS(make_tracker("arm", "best").error().what, "choose one of: default, thesis");
+/// What select() gives is what the frame's persons are: the picture is looked at once.
+TEST_F(BadInput, SelectGivesThePersons) {
+  const Selection arm = {
+      &kRightArm, {{JointId::kRightHand, 120, 100}, {JointId::kRightShoulder, 190, 100}, {JointId::kRightElbow, 150, 100}}};
+  const auto people = tracker_->select(frame_, {&arm, 1});
+  ASSERT_TRUE(people) << people.error().what;
+  ASSERT_EQ(people->size(), 1U);
+  EXPECT_EQ((*people)[0].presence, Presence::kSeen);
+  EXPECT_NEAR((*people)[0].find(JointId::kRightHand)->u_px, 120, 1);
+  EXPECT_NEAR((*people)[0].find(JointId::kRightShoulder)->u_px, 190, 1);
+}
+
+TEST(MakeTracker, Names) {
+  for (const std::string& name : tracker_names()) EXPECT_EQ((*make_tracker(name))->name(), name);
+  EXPECT_SAYS(make_tracker("leg").error().what, "choose one of: arm, thesis");
 }
 
 }  // namespace

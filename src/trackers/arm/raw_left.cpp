@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace duo::arm {
 namespace {
 
@@ -21,14 +23,21 @@ Result<RawLeft> RawLeft::of(const TrackerSetup& setup) {
   return RawLeft(setup.rig.left, r);
 }
 
-Result<std::array<Vec2, kArmJoints>> RawLeft::rectified(const ArmSelection& selection) const {
-  std::array<Vec2, kArmJoints> out;
+Result<std::array<Vec2, kParts>> RawLeft::rectified(const Selection& selection) const {
+  if (std::find(kArms.begin(), kArms.end(), selection.skeleton) == kArms.end())
+    return refused("select the arm: the selection has another skeleton than right_arm or left_arm");
+  std::array<Vec2, kParts> out;
   const Size size = lens_.camera().size;
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const Vec2 click = {selection.clicks[i].x_px, selection.clicks[i].y_px};
+    const JointDef& joint = selection.skeleton->joints[i];
+    const auto given = std::find_if(selection.clicks.begin(), selection.clicks.end(),
+                                    [&](const Click& click) { return click.joint == joint.id; });
+    if (given == selection.clicks.end())
+      return refused(fmt::format("select the arm: no click on the {}; give one on each joint", joint.name));
+    const Vec2 click = {given->x_px, given->y_px};
     const auto bad = [&](const char* why) {
       return refused(fmt::format("select the arm: the {} click ({:g}, {:g}) {} of {}x{}; click on the raw left picture",
-                                 kJointNames[i], click.x, click.y, why, size.width, size.height));
+                                 joint.name, click.x, click.y, why, size.width, size.height));
     };
     if (!lens_.covers(click, 0.5)) return bad("lies outside the picture");
     const auto ray = lens_.ray_of(click);
@@ -42,7 +51,7 @@ Result<std::array<Vec2, kArmJoints>> RawLeft::rectified(const ArmSelection& sele
   return out;
 }
 
-void RawLeft::set_pixel(Keypoint& joint) const {
+void RawLeft::set_pixel(Joint& joint) const {
   const auto pixel = lens_.pixel_of(transposed(geometry_.rig_from_left) * joint.p_in_rig_m);
   if (!pixel) return;
   joint.u_px = pixel->x;
@@ -57,6 +66,16 @@ Result<void> RawLeft::check(const Frame& frame, std::size_t arms) const {
         "select the arm: the frame lacks the colour picture or has another size than prepared; prepare the engine with what "
         "the tracker wants");
   return {};
+}
+
+std::vector<Person> persons_of(std::span<const Selection> selections) {
+  std::vector<Person> out;
+  for (const Selection& selection : selections) {
+    Person& person = out.emplace_back();
+    person.id = static_cast<std::uint32_t>(out.size());
+    person.skeleton = selection.skeleton;
+  }
+  return out;
 }
 
 }  // namespace duo::arm

@@ -30,11 +30,12 @@ PlaceQ4 place_of(Vec2 at_px) {
 
 class ThesisTracker final : public Tracker {
  public:
-  const char* name() const override { return "arm"; }
+  const char* name() const override { return "thesis"; }
+  std::span<const Skeleton* const> skeletons() const override { return arm::kArms; }
   Wants wants() const override { return {.views = false, .disparity = false, .observer = true}; }
   Result<void> prepare(const TrackerSetup& setup) override;
-  Result<void> select(const Frame& frame, const std::vector<ArmSelection>& selections) override;
-  const std::vector<ArmPose>& track(const Frame& frame) override;
+  Result<std::span<const Person>> select(const Frame& frame, std::span<const Selection> selections) override;
+  std::span<const Person> track(const Frame& frame) override;
   void reset() override;
   std::span<const StageTime> stages() const override { return seen_.stages; }
 
@@ -48,10 +49,10 @@ class ThesisTracker final : public Tracker {
   std::optional<arm::RawLeft> view_;  // empty before prepare()
   double frame_s_ = 0;
   std::optional<arm::MapObserver> map_observer_;  // likewise
-  std::vector<FollowedJoint> joints_;             // three an arm, in the order of Joint
+  std::vector<FollowedJoint> joints_;             // three per arm, in the order of its skeleton
   Expectation expected_;
   Observation seen_;
-  std::vector<ArmPose> poses_;
+  std::vector<Person> people_;
 };
 
 Result<void> ThesisTracker::prepare(const TrackerSetup& setup) {
@@ -77,7 +78,7 @@ Result<FollowedJoint> ThesisTracker::learn(const Frame& frame, Vec2 click_px, st
   FollowedJoint out{place_of(click_px)};
   const Pixel p = out.at.pixel();
   const auto hue = map_observer_->hue_at(p);
-  if (!hue) return refused("no colour", "this preset follows colours, so click on one");
+  if (!hue) return refused("no colour", "the thesis's tracker follows colours, so click on one");
   out.hue = *hue;
   const Image<std::uint16_t>& d_q4 = frame.disparity.d_q4;
   if (p.x < d_q4.width() && p.y < d_q4.height() && p.x >= 0 && p.y >= 0) out.z_m = depth_m(d_q4.at(p.y, p.x));
@@ -85,7 +86,7 @@ Result<FollowedJoint> ThesisTracker::learn(const Frame& frame, Vec2 click_px, st
   return out;
 }
 
-Result<void> ThesisTracker::select(const Frame& frame, const std::vector<ArmSelection>& selections) {
+Result<std::span<const Person>> ThesisTracker::select(const Frame& frame, std::span<const Selection> selections) {
   DUO_CHECK(view_.has_value());
   const Frame* maps = &frame;
   if (frame.observer != nullptr) {
@@ -95,23 +96,22 @@ Result<void> ThesisTracker::select(const Frame& frame, const std::vector<ArmSele
   std::vector<FollowedJoint> joints;
   auto points = std::make_shared<std::vector<JointPoints>>();
   map_observer_->look_at(*maps);
-  for (const ArmSelection& selection : selections) {
+  for (const Selection& selection : selections) {
     DUO_TRY_ASSIGN(const auto clicks, view_->rectified(selection));
     for (std::size_t i = 0; i < clicks.size(); ++i) {
-      DUO_TRY_ASSIGN(const FollowedJoint joint, learn(*maps, clicks[i], kJointNames[i]));
+      DUO_TRY_ASSIGN(const FollowedJoint joint, learn(*maps, clicks[i], selection.skeleton->joints[i].name));
       joints.push_back(joint);
       points->push_back(map_observer_->points_around(joint.at));
     }
   }
   joints_ = std::move(joints);
   expected_.points = std::move(points);
-  poses_.assign(selections.size(), {});
-  publish();
-  return {};
+  people_ = arm::persons_of(selections);
+  return track(frame);  // where the colours are around the clicks
 }
 
-const std::vector<ArmPose>& ThesisTracker::track(const Frame& frame) {
-  if (poses_.empty()) return poses_;
+std::span<const Person> ThesisTracker::track(const Frame& frame) {
+  if (people_.empty()) return people_;
   expect();
   const bool looked = observe(frame);
   for (std::size_t i = 0; i < joints_.size(); ++i) {
@@ -123,7 +123,7 @@ const std::vector<ArmPose>& ThesisTracker::track(const Frame& frame) {
     if (const double z = depth_m(seen.d_q4); z > 0) joint.z_m = z;
   }
   publish();
-  return poses_;
+  return people_;
 }
 
 void ThesisTracker::expect() {
@@ -144,21 +144,22 @@ bool ThesisTracker::observe(const Frame& frame) {
 
 void ThesisTracker::reset() {
   joints_.clear();
-  poses_.clear();
+  people_.clear();
 }
 
 void ThesisTracker::publish() {
   const auto camera = arm::Pinhole::of(view_->geometry());
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const FollowedJoint& joint = joints_[i];
-    Keypoint& out = poses_[i / kArmJoints].joints[i % kArmJoints];
+    Joint& out = people_[i / arm::kParts].joints[i % arm::kParts];
     const double unseen_s = joint.unseen * frame_s_;
     out.p_in_rig_m = camera.point({joint.at.x / 16.0, joint.at.y / 16.0}, joint.z_m);
-    out.sigma_m = kSigmaM + kSigmaGrowthMPerS * unseen_s;
+    out.cov_m2 = Covariance3::isotropic(kSigmaM + kSigmaGrowthMPerS * unseen_s);
     out.state = unseen_s > kLostAfterS ? JointState::kLost : unseen_s > 0 ? JointState::kInferred : JointState::kSeen;
     out.confidence = std::max(0.0, 1 - unseen_s / kLostAfterS);
     view_->set_pixel(out);
   }
+  for (Person& person : people_) person.sum_up();
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The tracker "arm", preset "thesis": as published, with its failures, to measure the default against.
+// The tracker "thesis": as published, with its failures, to measure the tracker "arm" against.
 #pragma once
 
 #include <memory>

@@ -3,12 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "core/lens.h"
 #include "core/targets.h"
 
 namespace duo {
 namespace {
 
-class ThesisPreset : public testing::Test {
+class ThesisTracking : public testing::Test {
  protected:
   void SetUp() override {
     const Camera camera{kSize, 300, 300, 160, 120, {}};
@@ -39,49 +40,55 @@ class ThesisPreset : public testing::Test {
         }
     return frame_;
   }
+  static Selection on(Vec2 hand, Vec2 elbow, Vec2 shoulder) {
+    return {&kRightArm,
+            {{JointId::kRightHand, hand.x, hand.y},
+             {JointId::kRightElbow, elbow.x, elbow.y},
+             {JointId::kRightShoulder, shoulder.x, shoulder.y}}};
+  }
   static constexpr Size kSize{320, 240};
   static constexpr Rgb8 kSkin{200, 120, 80}, kGreen{40, 160, 60}, kBlue{40, 60, 180};
   Frame frame_;
   std::unique_ptr<Tracker> tracker_ = make_thesis_tracker();
 };
 
-TEST_F(ThesisPreset, FollowsHueAndDepth) {
-  const ArmSelection clicks{{{{100, 80}, {160, 100}, {220, 90}}}};
-  ASSERT_TRUE(tracker_->select(paint({{{80, 100}, kSkin}, {{100, 160}, kGreen}, {{90, 220}, kBlue}}), {clicks}));
+TEST_F(ThesisTracking, FollowsHueAndDepth) {
+  const Selection clicks = on({100, 80}, {160, 100}, {220, 90});
+  ASSERT_TRUE(tracker_->select(paint({{{80, 100}, kSkin}, {{100, 160}, kGreen}, {{90, 220}, kBlue}}), {&clicks, 1}));
   for (int step = 1; step <= 10; ++step) {
     // The hand moves 6 px a frame, and the light turns its hue from 13 to 28 of 256: more than the tolerance in the end.
     const Rgb8 skin{200, static_cast<std::uint8_t>(120 + 4 * step), 80};
-    const ArmPose& pose =
+    const Person& person =
         tracker_->track(paint({{{80 + 3 * step, 100 - 6 * step}, skin}, {{100, 160}, kGreen}, {{90, 220}, kBlue}}))[0];
-    const Keypoint& hand = pose[Joint::kHand];
+    const Joint& hand = *person.find(JointId::kRightHand);
     ASSERT_EQ(hand.state, JointState::kSeen);
     ASSERT_NEAR(hand.u_px, 100 - 6 * step, 1);
     ASSERT_NEAR(hand.v_px, 80 + 3 * step, 1);
     ASSERT_NEAR(hand.p_in_rig_m.z, 2, 1e-6);
-    ASSERT_NEAR(pose[Joint::kShoulder].u_px, 220, 1);
+    ASSERT_NEAR(person.find(JointId::kRightShoulder)->u_px, 220, 1);
   }
 }
 
-TEST_F(ThesisPreset, LosesWhatDisappears) {
-  const ArmSelection clicks{{{{100, 80}, {160, 100}, {220, 90}}}};
-  ASSERT_TRUE(tracker_->select(paint({{{80, 100}, kSkin}, {{100, 160}, kGreen}, {{90, 220}, kBlue}}), {clicks}));
+TEST_F(ThesisTracking, LosesWhatDisappears) {
+  const Selection clicks = on({100, 80}, {160, 100}, {220, 90});
+  ASSERT_TRUE(tracker_->select(paint({{{80, 100}, kSkin}, {{100, 160}, kGreen}, {{90, 220}, kBlue}}), {&clicks, 1}));
   paint({{{100, 160}, kGreen}, {{90, 220}, kBlue}});
-  EXPECT_EQ(tracker_->track(frame_)[0][Joint::kHand].state, JointState::kInferred);
+  EXPECT_EQ(tracker_->track(frame_)[0].find(JointId::kRightHand)->state, JointState::kInferred);
   for (int i = 0; i < 31; ++i) tracker_->track(frame_);
-  EXPECT_EQ(tracker_->track(frame_)[0][Joint::kHand].state, JointState::kLost);
-  EXPECT_EQ(tracker_->track(frame_)[0][Joint::kElbow].state, JointState::kSeen);
+  EXPECT_EQ(tracker_->track(frame_)[0].find(JointId::kRightHand)->state, JointState::kLost);
+  EXPECT_EQ(tracker_->track(frame_)[0].find(JointId::kRightElbow)->state, JointState::kSeen);
 }
 
-TEST_F(ThesisPreset, RefusesGrayAndHoles) {
-  const ArmSelection gray{{{{20, 20}, {160, 100}, {220, 90}}}};
-  const auto on_wall = tracker_->select(paint({}), {gray});
+TEST_F(ThesisTracking, RefusesGrayAndHoles) {
+  const Selection gray = on({20, 20}, {160, 100}, {220, 90});
+  const auto on_wall = tracker_->select(paint({}), {&gray, 1});
   ASSERT_FALSE(on_wall);
-  EXPECT_NE(on_wall.error().what.find("no colour at the hand click"), std::string::npos) << on_wall.error().what;
+  EXPECT_NE(on_wall.error().what.find("no colour at the right_hand click"), std::string::npos) << on_wall.error().what;
   paint({{{20, 20}, kSkin}});
   frame_.disparity.d_q4.at(20, 20) = Disparity::kNone;
-  const auto on_hole = tracker_->select(frame_, {gray});
+  const auto on_hole = tracker_->select(frame_, {&gray, 1});
   ASSERT_FALSE(on_hole);
-  EXPECT_NE(on_hole.error().what.find("no depth at the hand click"), std::string::npos) << on_hole.error().what;
+  EXPECT_NE(on_hole.error().what.find("no depth at the right_hand click"), std::string::npos) << on_hole.error().what;
 }
 
 }  // namespace

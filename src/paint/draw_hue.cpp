@@ -3,7 +3,8 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "sinks/panels.h"
+#include "duoptic/paint.h"
+#include "paint/hue.h"
 #include "stages/hsv/hsv.h"
 
 namespace duo {

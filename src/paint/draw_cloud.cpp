@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/check.h"
-#include "duoptic/sink.h"
-#include "sinks/point.h"
+#include "core/point.h"
+#include "duoptic/paint.h"
 
 namespace duo {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/check.h"
-#include "duoptic/sink.h"
-#include "sinks/disparity_colors.h"
-#include "sinks/turbo.h"
+#include "duoptic/paint.h"
+#include "paint/legend.h"
+#include "paint/turbo.h"
 
 namespace duo {
 namespace {

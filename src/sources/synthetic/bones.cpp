@@ -1,4 +1,4 @@
-#include "sources/synthetic/skeleton.h"
+#include "sources/synthetic/bones.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,8 +33,8 @@ Limb reach(Vec3 root_m, Vec3 end_m, Vec3 bend, double upper_m, double lower_m) {
 
 }  // namespace
 
-Skeleton make_skeleton(const Pose& pose, double scale) {
-  Skeleton out;
+Bones make_bones(const Pose& pose, double scale) {
+  Bones out;
   out.scale = scale;
   const Vec3 hips{0, -0.93 * scale, 0};
   out.person_from_torso = Rigid3{{}, hips + pose.sway_m} *

@@ -1,7 +1,7 @@
 // The legend that explains the colours of disparity.
 #pragma once
 
-#include "duoptic/sink.h"
+#include "duoptic/paint.h"
 
 namespace duo {
 

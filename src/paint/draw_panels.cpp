@@ -7,8 +7,9 @@
 #include <string_view>
 
 #include "core/check.h"
-#include "sinks/disparity_colors.h"
-#include "sinks/panels.h"
+#include "duoptic/paint.h"
+#include "paint/hue.h"
+#include "paint/legend.h"
 
 namespace duo {
 namespace {
@@ -88,74 +89,60 @@ void broken_line(cv::Mat& rgb, cv::Point2d a, cv::Point2d b, const cv::Scalar& c
   }
 }
 
-/// The skeleton over the raw left picture.
-class Skeleton {
- public:
-  Skeleton(View<Rgb8> dst, const TrackHeader& header, const Layout& layout)
-      : rgb_(mat_of(dst)),
-        scale_(static_cast<double>(dst.width()) / header.size.width),
-        focal_px_(header.rectified.focal_px * scale_),
-        thick_(layout.scaled(4)),
-        dash_px_(layout.scaled(8)) {}
-
-  void draw(const ArmPose& arm) {
-    for (std::size_t j = 0; j + 1 < kArmJoints; ++j) bone(arm.joints[j], arm.joints[j + 1]);
-    for (const Keypoint& joint : arm.joints) box(joint);
-  }
-
- private:
-  cv::Point2d place(const Keypoint& k) const { return {(k.u_px + 0.5) * scale_ - 0.5, (k.v_px + 0.5) * scale_ - 0.5}; }
-
-  void bone(const Keypoint& a, const Keypoint& b) {
-    if (a.state == JointState::kLost || b.state == JointState::kLost) return;
-    if (a.state == JointState::kSeen && b.state == JointState::kSeen)
-      cv::line(rgb_, place(a), place(b), kBone, thick_, cv::LINE_AA);
+/// Shapes over the raw left picture, scaled into `dst`.
+void stroke(const Shapes& shapes, View<Rgb8> dst, const TrackHeader& header, const Layout& layout) {
+  cv::Mat rgb = mat_of(dst);
+  const double scale = static_cast<double>(dst.width()) / header.size.width;
+  const int thick = layout.scaled(4);
+  const double dash_px = layout.scaled(8);
+  const auto place = [&](double x_px, double y_px) {
+    return cv::Point2d((x_px + 0.5) * scale - 0.5, (y_px + 0.5) * scale - 0.5);
+  };
+  for (const Shapes::Line& bone : shapes.bones) {
+    const cv::Point2d a = place(bone.x0_px, bone.y0_px), b = place(bone.x1_px, bone.y1_px);
+    if (bone.broken)
+      broken_line(rgb, a, b, kBone, thick, dash_px);
     else
-      broken_line(rgb_, place(a), place(b), kBone, thick_, dash_px_);
+      cv::line(rgb, a, b, kBone, thick, cv::LINE_AA);
   }
-
-  void box(const Keypoint& joint) {
-    if (joint.state == JointState::kLost) return;
-    constexpr double kHalf_m = 0.05, kMin_px = 5, kMax_px = 60;
-    const double half = std::clamp(focal_px_ * kHalf_m / std::max(joint.p_in_rig_m.z, 0.1), kMin_px, kMax_px);
-    const cv::Point2d c = place(joint), dx(half, 0), dy(0, half);
+  for (const Shapes::Mark& joint : shapes.joints) {
+    const double half = scale * joint.half_px;
+    const cv::Point2d c = place(joint.x_px, joint.y_px), dx(half, 0), dy(0, half);
     const cv::Point2d corners[] = {c - dx - dy, c + dx - dy, c + dx + dy, c - dx + dy};
-    if (joint.state == JointState::kSeen) {
-      cv::rectangle(rgb_, corners[0], corners[2], kBox, thick_ - 1, cv::LINE_AA);
-      cv::circle(rgb_, c, thick_, kBox, cv::FILLED, cv::LINE_AA);
-      return;
+    if (joint.broken) {
+      for (std::size_t i = 0; i < 4; ++i) broken_line(rgb, corners[i], corners[(i + 1) % 4], kBox, thick - 1, dash_px / 2);
+      continue;
     }
-    for (std::size_t i = 0; i < 4; ++i) broken_line(rgb_, corners[i], corners[(i + 1) % 4], kBox, thick_ - 1, dash_px_ / 2);
+    cv::rectangle(rgb, corners[0], corners[2], kBox, thick - 1, cv::LINE_AA);
+    cv::circle(rgb, c, thick, kBox, cv::FILLED, cv::LINE_AA);
   }
-
-  cv::Mat rgb_;
-  double scale_, focal_px_;
-  int thick_;
-  double dash_px_;
-};
-
-/// "hand 1.32 m +-2 cm" for each joint; a line an arm.
-void put_joints(View<Rgb8> dst, const std::vector<ArmPose>& arms, const Layout& layout) {
-  static const cv::Scalar kColors[] = {kBox, {250, 190, 60}, kFaint};
-  for (std::size_t arm = 0; arm < arms.size() && arm < 2; ++arm)
-    for (std::size_t j = 0; j < kArmJoints; ++j) {
-      const Keypoint& k = arms[arm].joints[j];
-      const std::string text = k.state == JointState::kLost ? fmt::format("{} lost", kJointNames[j])
-                                                            : fmt::format("{} {:.2f} m +-{:.0f} cm", kJointNames[j],
-                                                                          k.p_in_rig_m.z, std::ceil(100 * k.sigma_m));
-      const int x = layout.scaled(10) + static_cast<int>(j) * (dst.width() - layout.scaled(20)) / kArmJoints;
-      put_text(dst, text, {x, layout.scaled(arms.size() > 1 ? 18 : 26) + static_cast<int>(arm) * layout.scaled(20)},
-               kColors[static_cast<std::size_t>(k.state)], layout);
-    }
 }
 
-void put_shades(View<Rgb8> dst, const Layout& layout) {
-  for (std::size_t j = 0; j < kArmJoints; ++j) {
-    const int x = layout.scaled(10) + static_cast<int>(j) * layout.scaled(120);
-    const Rgb8 c = kJointShades[j];
+/// "hand 1.32 m +-2 cm" for each joint; a line per person.
+void put_labels(View<Rgb8> dst, std::span<const Person> people, const Layout& layout) {
+  static const cv::Scalar kColors[] = {kBox, {250, 190, 60}, kFaint};
+  constexpr std::size_t kMostLines = 2;
+  for (std::size_t n = 0; n < people.size() && n < kMostLines; ++n) {
+    const std::vector<Label> labels = labels_of(people[n]);
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      const std::string sigma = labels[i].sigma.empty() ? "" : " +-" + labels[i].sigma;
+      const int x =
+          layout.scaled(10) + static_cast<int>(i) * (dst.width() - layout.scaled(20)) / static_cast<int>(labels.size());
+      put_text(dst, labels[i].text + sigma,
+               {x, layout.scaled(people.size() > 1 ? 18 : 26) + static_cast<int>(n) * layout.scaled(20)},
+               kColors[static_cast<std::size_t>(labels[i].state)], layout);
+    }
+  }
+}
+
+void put_shades(View<Rgb8> dst, const TrackHeader& header, const Layout& layout) {
+  int x = layout.scaled(10);
+  for (const JointId joint : shaded_joints(header)) {
+    const Rgb8 c = shade_of(joint);
     cv::rectangle(mat_of(dst), cv::Rect(x, layout.scaled(14), layout.scaled(18), layout.scaled(16)), cv::Scalar(c.r, c.g, c.b),
                   cv::FILLED);
-    put_text(dst, std::string(kJointNames[j]), {x + layout.scaled(26), layout.scaled(28)}, kText, layout);
+    put_text(dst, std::string(part_of(joint)), {x + layout.scaled(26), layout.scaled(28)}, kText, layout);
+    x += layout.scaled(120);
   }
 }
 
@@ -179,10 +166,9 @@ Image<Rgb8> draw_panels(const TrackedFrame& frame, const TrackHeader& header, co
   const Cell camera(out, layout, 0, 0), depth(out, layout, 0, 1), region(out, layout, 1, 0), hue(out, layout, 1, 1);
 
   fit(frame.left.pixels.clone(), camera.picture);
-  Skeleton skeleton(camera.picture, header, layout);
-  for (const ArmPose& arm : frame.arms) skeleton.draw(arm);
+  stroke(shapes_of(frame.people, header), camera.picture, header, layout);
   put_title(camera, layout, "left camera: joints and bones", fmt::format("frame {}   {:.2f} s", frame.number, frame.t_s));
-  put_joints(camera.caption, frame.arms, layout);
+  put_labels(camera.caption, frame.people, layout);
 
   Image<Rgb8> drawn(frame.frame.color.size());
   color_disparity(frame.frame.disparity.d_q4, range, drawn);
@@ -190,10 +176,10 @@ Image<Rgb8> draw_panels(const TrackedFrame& frame, const TrackHeader& header, co
   put_title(depth, layout, "depth", "metres");
   draw_legend(depth.caption, range, &header.rectified);
 
-  draw_arm_region(frame.frame, header.rectified, frame.arms, drawn);
+  draw_regions(frame.frame, header.rectified, frame.people, drawn);
   fit(drawn, region.picture);
-  put_title(region, layout, "arm region", "by nearest joint");
-  put_shades(region.caption, layout);
+  put_title(region, layout, "body", "by nearest joint");
+  put_shades(region.caption, header, layout);
 
   draw_hue(frame.frame.color, drawn);
   fit(drawn, hue.picture);

@@ -35,7 +35,7 @@ struct Limb {
   Vec3 root_m, middle_m, end_m;
 };
 
-struct Skeleton {
+struct Bones {
   double scale = 1;                            // of every length, 1 for a person of 1.75 m
   Rigid3 person_from_torso, person_from_head;  // at rest, the torso's frame is the person's
   std::array<Limb, 2> arms, legs;
@@ -49,6 +49,6 @@ inline constexpr double kUpperArm_m = 0.29, kForearm_m = 0.26, kPalm_m = 0.068, 
                         kShoulderHeight_m = 1.43, kHeadHeight_m = 1.635;
 
 /// Bone lengths do not depend on the pose: a wrist out of reach is brought nearer.
-Skeleton make_skeleton(const Pose& pose, double scale);
+Bones make_bones(const Pose& pose, double scale);
 
 }  // namespace duo::synthetic

@@ -1,0 +1,84 @@
+// Drawing: what was found as pictures, and as shapes over a picture.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "duoptic/frame.h"
+#include "duoptic/person.h"
+#include "duoptic/rig.h"
+#include "duoptic/sink.h"
+
+namespace duo {
+
+/// The disparities that get the first and the last colour.
+struct DisparityRange {
+  double far_px = 0, near_px = 0;
+  bool empty() const { return near_px <= far_px; }
+};
+/// From the 1st to the 99th percentile of the valid pixels, at least 1 px wide; empty without any.
+DisparityRange disparity_range(View<const std::uint16_t> d_q4);
+
+/// Disparity as colours: the Turbo map (Mikhailov 2019), near is red, none is black, with a legend; the legend is in
+/// metres when `rectified` is given, else in px. The range of the colours is disparity_range().
+Image<Rgb8> draw_disparity(View<const std::uint16_t> d_q4, const Rectified* rectified);
+
+/// Disparity in the colours of draw_disparity() over a given range; black where there is none.
+///
+/// Shape  both H x W
+void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range, View<Rgb8> dst);
+
+/// The colour of a joint in draw_regions().
+Rgb8 shade_of(JointId joint);
+
+/// The rectified picture, dark and gray, with the persons' pixels in the shade of the joint they are nearest to. A person is
+/// what lies within the joints' radius of the bones between joints that are not lost.
+///
+/// Shape  dst like the frame's maps; of these it needs disparity and colour
+void draw_regions(const Frame& frame, const Rectified& rectified, std::span<const Person> people, View<Rgb8> dst);
+
+/// Hue as colour, saturation as brightness.
+///
+/// Shape  src and dst H x W
+void draw_hue(View<const Rgb8> src, View<Rgb8> dst);
+
+/// The cloud drawn from a camera moved sideways and up, so that a person sees its shape without a 3D program.
+Image<Rgb8> draw_cloud(View<const std::uint16_t> d_q4, View<const Rgb8> color, const Rectified& rectified, Size size);
+
+/// Persons as shapes over the raw left picture, in its pixels; broken where a joint is inferred, left out where it is lost.
+struct Shapes {
+  struct Line {
+    double x0_px = 0, y0_px = 0, x1_px = 0, y1_px = 0;
+    bool broken = false;
+  };
+  struct Mark {
+    double x_px = 0, y_px = 0, half_px = 0, sigma_px = 0;  // a box around a joint, as wide as a hand, and a ring of one sigma
+    bool broken = false;
+  };
+  std::vector<Line> bones;
+  std::vector<Mark> joints;
+};
+Shapes shapes_of(std::span<const Person> people, const TrackHeader& header);
+
+/// What a caption says of one joint, or of a person with more joints than a caption has room for.
+struct Label {
+  std::string text;   // "hand 1.32 m"
+  std::string sigma;  // "2 cm"; empty when lost
+  JointState state = JointState::kLost;
+};
+std::vector<Label> labels_of(const Person& person);
+
+/// The joints that captions explain the shades of: each part of the body once, of whichever side.
+std::vector<JointId> shaded_joints(const TrackHeader& header);
+
+/// The thesis's four panels: the raw left picture with joints as green boxes and bones as red lines, both broken where a joint
+/// is inferred; depth in colours over `range`, with a legend in metres; the persons' pixels in a shade per joint; hue as
+/// colour with saturation as brightness. The same size for every frame of a recording, even in both directions.
+Image<Rgb8> draw_panels(const TrackedFrame& frame, const TrackHeader& header, const DisparityRange& range);
+
+/// Of draw_panels(), whatever the frame.
+Size panels_size(const TrackHeader& header);
+
+}  // namespace duo

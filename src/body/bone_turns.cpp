@@ -1,0 +1,142 @@
+#include "body/bone_turns.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <cmath>
+
+namespace duo {
+namespace {
+
+using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+/// The part of `v` across `along` (of length 1); empty when hardly anything is left.
+std::optional<Vec3> across(Vec3 v, Vec3 along) {
+  const Vec3 rest = v - dot(v, along) * along;
+  constexpr double kLeast = 1e-3;
+  if (norm(rest) < kLeast) return std::nullopt;
+  return normalized(rest);
+}
+
+/// The rotation that takes `rest` to `bone` and `rest_hinge` to `hinge`; both pairs stand upright on each other.
+Mat3 turn_to(Vec3 rest, Vec3 rest_hinge, Vec3 bone, Vec3 hinge) {
+  return transposed(Mat3::from_rows(bone, hinge, cross(bone, hinge))) *
+         Mat3::from_rows(rest, rest_hinge, cross(rest, rest_hinge));
+}
+
+/// The rotation that fits directions at rest to those found best.
+Mat3 best_fit(std::span<const Vec3> rest, std::span<const Vec3> found) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    sum += Eigen::Vector3d(found[i].x, found[i].y, found[i].z) * Eigen::RowVector3d(rest[i].x, rest[i].y, rest[i].z);
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d u = svd.matrixU();
+  if (u.determinant() * svd.matrixV().determinant() < 0) u.col(2) *= -1;  // no reflection
+  Mat3 out;
+  Eigen::Map<Matrix>(out.m.data()) = u * svd.matrixV().transpose();
+  return out;
+}
+
+}  // namespace
+
+// Who looks along z with y up has the left hand at +x when the axes are right-handed, at -x when they are left-handed.
+Vec3 rest_direction(JointId joint, BodyAxes axes) {
+  const Side side = kBody.joints[static_cast<std::size_t>(joint)].side;
+  const double out = (side == Side::kLeft) == (axes == BodyAxes::kRightHanded) ? 1 : -1;
+  switch (joint) {
+    case JointId::kPelvis:
+    case JointId::kSpine:
+    case JointId::kChest:
+    case JointId::kNeck:
+    case JointId::kHead:
+      return {0, 1, 0};
+    case JointId::kLeftKnee:
+    case JointId::kRightKnee:
+    case JointId::kLeftAnkle:
+    case JointId::kRightAnkle:
+      return {0, -1, 0};
+    case JointId::kLeftFoot:
+    case JointId::kRightFoot:
+      return {0, 0, 1};
+    default:  // arms, and hips
+      return {out, 0, 0};
+  }
+}
+
+std::optional<std::vector<Vec3>> known_places(const Person& person, const Mat3& axes_from_rig) {
+  std::vector<Vec3> out;
+  for (std::size_t j = 0; j < person.count(); ++j) {
+    if (person.joints[j].state == JointState::kLost) return std::nullopt;
+    out.push_back(axes_from_rig * person.joints[j].p_in_rig_m);
+  }
+  return out;
+}
+
+BoneTurner::BoneTurner(const Skeleton& skeleton, BodyAxes axes) : nodes_(skeleton.joints.size()) {
+  for (std::size_t j = 0; j < nodes_.size(); ++j) {
+    const JointDef& joint = skeleton.joints[j];
+    nodes_[j].rest = rest_direction(joint.id, axes);
+    if (joint.parent >= 0) nodes_[static_cast<std::size_t>(joint.parent)].children.push_back(j);
+  }
+  for (std::size_t j = 0; j < nodes_.size(); ++j) {
+    Node& node = nodes_[j];
+    if (node.children.size() != 1) continue;
+    const Vec3 bone = nodes_[node.children[0]].rest;
+    // An elbow bends the forearm to the front, around y; a knee bends the shin to the back, around x.
+    const bool arm = bone.x != 0;
+    node.hinge_at_rest = node.hinge = arm ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
+    node.bend_sign = dot(cross(bone, Vec3{0, 0, arm ? 1.0 : -1.0}), node.hinge_at_rest);
+    const bool limb = skeleton.joints[j].side != Side::kMiddle;
+    const bool first =
+        skeleton.joints[j].parent < 0 || nodes_[static_cast<std::size_t>(skeleton.joints[j].parent)].children.size() > 1;
+    node.bends = limb && first && nodes_[node.children[0]].children.size() == 1;
+  }
+}
+
+std::optional<std::vector<Mat3>> BoneTurner::turn(std::span<const Vec3> places) {
+  constexpr double kShortest = 1e-6;
+  std::vector<Mat3> out(nodes_.size()), whole(nodes_.size());  // whole: from the root's parent
+  for (std::size_t j = 0; j < nodes_.size(); ++j)
+    for (const std::size_t child : nodes_[j].children)
+      if (norm(places[child] - places[j]) < kShortest) return std::nullopt;
+  for (std::size_t j = 0; j < nodes_.size(); ++j) {
+    Node& node = nodes_[j];
+    std::vector<Vec3> bones;
+    for (const std::size_t child : node.children) bones.push_back(transposed(whole[j]) * normalized(places[child] - places[j]));
+    if (!bones.empty()) out[j] = turn_of(node, bones, whole[j], places);
+    for (const std::size_t child : node.children) whole[child] = whole[j] * out[j];
+  }
+  return out;
+}
+
+Mat3 BoneTurner::turn_of(Node& node, std::span<const Vec3> bones, const Mat3& rig_from_parent, std::span<const Vec3> places) {
+  if (bones.size() > 1) {
+    std::vector<Vec3> rest;
+    for (const std::size_t child : node.children) rest.push_back(nodes_[child].rest);
+    return best_fit(rest, bones);
+  }
+  const std::size_t child = node.children[0];
+  Vec3 keep = node.hinge_at_rest;
+  if (node.bends) {
+    const std::size_t end = nodes_[child].children[0];
+    const Vec3 lower = transposed(rig_from_parent) * normalized(places[end] - places[child]);
+    const Vec3 bend = node.bend_sign * cross(bones[0], lower);
+    constexpr double kStraight = 0.17;  // sine of 10 degrees: below, noise decides where the hinge points
+    if (norm(bend) > kStraight) node.hinge = normalized(bend);
+    keep = node.hinge;
+  }
+  // Where the bone lies along the axis that it keeps, its own front stays where it can.
+  std::optional<Vec3> hinge = across(keep, bones[0]);
+  if (!hinge) hinge = across({0, 0, 1}, bones[0]);
+  if (!hinge) hinge = across({1, 0, 0}, bones[0]);
+  if (node.bends) node.hinge = *hinge;
+  return turn_to(nodes_[child].rest, node.hinge_at_rest, bones[0], *hinge);
+}
+
+std::array<double, 4> quaternion(const Mat3& rotation) {
+  const Eigen::Map<const Matrix> matrix(rotation.m.data());
+  const Eigen::Quaterniond q = Eigen::Quaterniond(Eigen::Matrix3d(matrix)).normalized();
+  const double sign = q.w() < 0 ? -1 : 1;
+  return {sign * q.x(), sign * q.y(), sign * q.z(), sign * q.w()};
+}
+
+}  // namespace duo

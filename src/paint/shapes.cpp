@@ -1,0 +1,71 @@
+// Persons as shapes over the raw left picture, and in words.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "duoptic/paint.h"
+
+namespace duo {
+namespace {
+
+/// A box as wide as a hand, a ring of one sigma.
+Shapes::Mark mark_of(const Joint& joint, const TrackHeader& header) {
+  constexpr double kHalf_m = 0.05, kNearest_m = 0.1;
+  const double px_per_m = header.rectified.focal_px / std::max(joint.p_in_rig_m.z, kNearest_m);
+  const double width = header.size.width;
+  return {joint.u_px, joint.v_px, std::clamp(kHalf_m * px_per_m, width / 128, width / 10),
+          std::clamp(joint.sigma_m() * px_per_m, width / 200, 3 * width), joint.state != JointState::kSeen};
+}
+
+}  // namespace
+
+Shapes shapes_of(std::span<const Person> people, const TrackHeader& header) {
+  Shapes out;
+  for (const Person& person : people)
+    for (std::size_t j = 0; j < person.count(); ++j) {
+      const Joint& joint = person.joints[j];
+      if (joint.state == JointState::kLost) continue;
+      out.joints.push_back(mark_of(joint, header));
+      const int parent = person.skeleton->joints[j].parent;
+      if (parent < 0) continue;
+      const Joint& from = person.joints[static_cast<std::size_t>(parent)];
+      if (from.state == JointState::kLost) continue;
+      const bool broken = from.state != JointState::kSeen || joint.state != JointState::kSeen;
+      out.bones.push_back({from.u_px, from.v_px, joint.u_px, joint.v_px, broken});
+    }
+  return out;
+}
+
+std::vector<Label> labels_of(const Person& person) {
+  constexpr std::size_t kMost = 4;
+  std::vector<Label> out;
+  if (person.count() > kMost) {
+    std::size_t seen = 0;
+    for (std::size_t j = 0; j < person.count(); ++j) seen += person.joints[j].state == JointState::kSeen;
+    return {{fmt::format("person {}: {} of {} joints seen", person.id, seen, person.count()), "",
+             static_cast<JointState>(person.presence)}};
+  }
+  for (std::size_t j = 0; j < person.count(); ++j) {
+    const Joint& joint = person.joints[j];
+    const std::string_view part = part_of(person.skeleton->joints[j].id);
+    if (joint.state == JointState::kLost)
+      out.push_back({fmt::format("{} lost", part), "", joint.state});
+    else
+      out.push_back({fmt::format("{} {:.2f} m", part, joint.p_in_rig_m.z),
+                     fmt::format("{:.0f} cm", std::ceil(100 * joint.sigma_m())), joint.state});
+  }
+  return out;
+}
+
+std::vector<JointId> shaded_joints(const TrackHeader& header) {
+  std::vector<JointId> out;
+  for (const Skeleton* skeleton : header.skeletons)
+    for (const JointDef& joint : skeleton->joints) {
+      const auto same = [&](JointId other) { return part_of(other) == part_of(joint.id); };
+      if (std::none_of(out.begin(), out.end(), same)) out.push_back(joint.id);
+    }
+  return out;
+}
+
+}  // namespace duo
