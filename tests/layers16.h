@@ -3,12 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "core/tensor.h"
+#include "stages/conv_first16/conv_first16.h"
+#include "stages/depthwise16/depthwise16.h"
 #include "stages/matmul16/matmul16.h"
+#include "tests/agree.h"
 
 namespace duo::test {
 
@@ -74,6 +78,56 @@ struct RandomMatmul16 {
   RandomMatmul16& operator=(const RandomMatmul16&) = delete;
 };
 
+struct RandomDepthwise16 {
+  std::vector<std::int16_t> weights;
+  Scales16 scales;
+  Depthwise16 layer;
+  RandomDepthwise16(int channels, int window, int stride, int pad_top, int pad_left, std::mt19937& rng)
+      : weights(static_cast<std::size_t>(channels) * window * window), scales(channels, rng), layer{channels,    window,
+                                                                                                    stride,      pad_top,
+                                                                                                    pad_left,    weights,
+                                                                                                    scales.bias, scales.shift,
+                                                                                                    range16(rng)} {
+    const int taps = window * window;
+    const auto of_channels = weights16(channels, taps, rng);
+    for (int c = 0; c < channels; ++c)
+      for (int i = 0; i < taps; ++i) weights[i * channels + c] = of_channels[c * taps + i];
+  }
+  RandomDepthwise16(const RandomDepthwise16&) = delete;
+  RandomDepthwise16& operator=(const RandomDepthwise16&) = delete;
+};
+
+struct RandomConvFirst16 {
+  std::vector<std::int16_t> weights;
+  Scales16 scales;
+  std::vector<std::int32_t> packed;
+  ConvFirst16 layer;
+  RandomConvFirst16(int outputs, int pad_top, int pad_left, std::mt19937& rng)
+      : weights(weights16(outputs, kFirstTaps, rng)), scales(outputs, rng), layer{outputs,     pad_top,     pad_left,
+                                                                                  weights,     scales.bias, scales.shift,
+                                                                                  range16(rng)} {
+    packed.resize(packed_words(layer));
+    pack(layer, packed);
+    layer.packed = packed;
+  }
+  RandomConvFirst16(const RandomConvFirst16&) = delete;
+  RandomConvFirst16& operator=(const RandomConvFirst16&) = delete;
+};
+
+/// A tensor with its memory, which ends where the tensor does.
+struct Made16 {
+  std::vector<std::int16_t> data;
+  Tensor16 view;
+  Made16(Size size, int channels, std::int16_t value = -1)
+      : data(static_cast<std::size_t>(size.width) * size.height * channels, value), view(data.data(), size, channels) {}
+  Made16(Size size, int channels, std::mt19937& rng) : Made16(size, channels) {
+    data = values16(data.size(), rng);
+    view = {data.data(), size, channels};
+  }
+  Made16(const Made16&) = delete;
+  Made16& operator=(const Made16&) = delete;
+};
+
 /// Fails at the first value that differs.
 inline void expect_same16(ConstTensor16 want, ConstTensor16 got, const std::string& what) {
   for (int y = 0; y < want.height(); ++y)
@@ -84,6 +138,21 @@ inline void expect_same16(ConstTensor16 want, ConstTensor16 got, const std::stri
                         << " x=" << x << " c=" << c << ": want " << want.pixel(y, x)[c] << " got " << got.pixel(y, x)[c];
           return;
         }
+}
+
+/// Holds a stage's vectors against its plain loops: every instruction set, one and three threads. ref(y), simd(pool, y).
+template <class Ref, class Simd>
+void agree16(const std::string& what, Size size, int channels, Ref ref, Simd simd) {
+  Made16 want(size, channels);
+  ref(want.view);
+  static Pool one(1), three(3);
+  each_target([&](const std::string& target) {
+    for (Pool* pool : {&one, &three}) {
+      Made16 got(size, channels);
+      simd(*pool, got.view);
+      expect_same16(want.view, got.view, what + " simd " + target + " threads " + std::to_string(pool->threads()));
+    }
+  });
 }
 
 }  // namespace duo::test

@@ -1,7 +1,10 @@
 // The inner step of layers in 16-bit integers. Included once for each instruction set.
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
+
+#include "core/tensor.h"
 
 #if defined(DUO_PRODUCTS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef DUO_PRODUCTS_INL_H
@@ -77,6 +80,41 @@ HWY_INLINE hn::Vec<D16> demote_both(D16 d16, V a, V b) {
   const hn::Half<D16> half;
   return hn::Combine(d16, hn::DemoteTo(half, b), hn::DemoteTo(half, a));
 #endif
+}
+
+/// Stores the first `count` of the outputs range.clamp((sum + bias) >> shift), which vectors of D hold side by side.
+template <class D, int kVectors>
+HWY_INLINE void store_outputs(D, const hn::Vec<D> (&sum)[kVectors], const hn::Vec<D> (&bias)[kVectors],
+                              const hn::Vec<D> (&shift)[kVectors], Range16 range, std::int16_t* out, int count) {
+  constexpr int kCount = kVectors * static_cast<int>(hn::MaxLanes(D()));
+  const hn::CappedTag<std::int16_t, kCount> d16;
+  // Demotion saturates, which the range makes good.
+  hn::Vec<decltype(d16)> values;
+  const auto first = hn::Shr(hn::Add(sum[0], bias[0]), shift[0]);
+  if constexpr (kVectors == 2)
+    values = demote_both(d16, first, hn::Shr(hn::Add(sum[1], bias[1]), shift[1]));
+  else
+    values = hn::DemoteTo(d16, first);
+  values = hn::Clamp(values, hn::Set(d16, range.low), hn::Set(d16, range.high));
+  if (count >= kCount) {
+    hn::StoreU(values, d16, out);
+  } else {
+    HWY_ALIGN std::int16_t last[kCount];
+    hn::Store(values, d16, last);
+    std::copy_n(last, count, out);
+  }
+}
+
+/// Calls vector(d, i) for as many vectors of `count` values as there are, first wide ones, then those of 8, and plain(i) for
+/// the values that are left.
+template <class D, class Vector, class Plain>
+HWY_INLINE void each_vector(D d, int count, Vector vector, Plain plain, int i = 0) {
+  constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
+  for (; i + kLanes <= count; i += kLanes) vector(d, i);
+  if constexpr (kLanes > 8)
+    each_vector(hn::Half<D>(), count, vector, plain, i);
+  else
+    for (; i < count; ++i) plain(i);
 }
 
 }  // namespace duo::HWY_NAMESPACE

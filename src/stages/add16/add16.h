@@ -21,5 +21,8 @@ struct Add16 {
 namespace ref {
 void add16(const Add16& layer, ConstTensor16 a, ConstTensor16 b, Tensor16 y);
 }
+namespace simd {
+void add16(Pool& pool, const Add16& layer, ConstTensor16 a, ConstTensor16 b, Tensor16 y);
+}
 
 }  // namespace duo

@@ -1,6 +1,6 @@
 #include "stages/add16/add16.h"
 
-#include "tests/agree.h"
+#include "tests/layers16.h"
 
 namespace duo {
 namespace {
@@ -28,6 +28,24 @@ TEST(Add16, LargestValues) {
   EXPECT_EQ(y[1], -32767);
   ref::add16({0, 0, 0, {}}, {a, {1, 1}, 2}, {a, {1, 1}, 2}, {y, {1, 1}, 2});
   EXPECT_EQ(y[0], 32767) << "clamped";
+}
+
+TEST(Add16, SimdAgrees) {
+  std::mt19937 rng(1);
+  for (const int channels : {1, 7, 8, 24, 45, 130})
+    for (const int of_b : {channels, (channels + 1) / 2})
+      for (const Size size : {Size{1, 1}, Size{3, 2}, Size{17, 5}, Size{64, 40}}) {
+        const Add16 layer{static_cast<int>(rng() % 15), static_cast<int>(rng() % 15), static_cast<int>(rng() % 16),
+                          test::range16(rng)};
+        const test::Made16 a(size, channels, rng), b(size, of_b, rng);
+        test::agree16(
+            "add16", size, channels, [&](Tensor16 y) { ref::add16(layer, a.view, b.view, y); },
+            [&](Pool& pool, Tensor16 y) {
+              std::copy(a.data.begin(), a.data.end(), y.data());  // y may be a
+              simd::add16(pool, layer, y, b.view, y);
+            });
+        if (HasFailure()) return;
+      }
 }
 
 }  // namespace

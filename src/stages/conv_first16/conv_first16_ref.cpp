@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 
 #include "core/check.h"
@@ -16,6 +17,25 @@ bool sums_fit(const ConvFirst16& layer, Range16 x) {
     if (least < std::numeric_limits<std::int32_t>::min() || most > std::numeric_limits<std::int32_t>::max()) return false;
   }
   return true;
+}
+
+std::size_t packed_words(const ConvFirst16& layer) {
+  return std::size_t{kFirstBlockWords} * ((layer.outputs + kFirstBlock - 1) / kFirstBlock);
+}
+
+void pack(const ConvFirst16& layer, std::span<std::int32_t> packed) {
+  DUO_CHECK(packed.size() == packed_words(layer));
+  std::fill(packed.begin(), packed.end(), 0);
+  for (int n = 0; n < layer.outputs; ++n) {
+    std::int32_t* word = packed.data() + n / kFirstBlock * kFirstBlockWords + n % kFirstBlock;
+    word[0] = layer.bias[n];
+    word[kFirstBlock] = layer.shift[n];
+    for (int k = 0; k < kFirstPairs; ++k) {
+      const std::int16_t* w = layer.weights.data() + n * kFirstTaps + k / 5 * 9 + k % 5 * 2;
+      const std::uint32_t low = static_cast<std::uint16_t>(w[0]), high = k % 5 == 4 ? 0 : static_cast<std::uint16_t>(w[1]);
+      word[(2 + k) * kFirstBlock] = static_cast<std::int32_t>(low | high << 16);
+    }
+  }
 }
 
 namespace ref {

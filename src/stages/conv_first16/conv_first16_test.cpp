@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tests/agree.h"
+#include "tests/layers16.h"
 
 namespace duo {
 namespace {
@@ -34,6 +34,41 @@ TEST(ConvFirst16, SumsFit) {
   EXPECT_TRUE(sums_fit(ConvFirst16{1, 1, 1, w, bias, shift, {}}, {}));
   w[13] = 5;
   EXPECT_FALSE(sums_fit(ConvFirst16{1, 1, 1, w, bias, shift, {}}, {}));
+}
+
+// By hand: 17 outputs are two blocks of 2 + 15 rows of 16 words; of a row of 9 weights the last has 0 beside it.
+TEST(ConvFirst16, Packs) {
+  std::vector<std::int16_t> w(17 * 27);
+  w[27 * 16 + 9] = -3, w[27 * 16 + 10] = 4, w[27 * 16 + 17] = 6;
+  std::vector<std::int32_t> bias(17);
+  bias[16] = 11;
+  const std::vector<std::uint8_t> shift(17, 5);
+  const ConvFirst16 layer{17, 1, 1, w, bias, shift, {}};
+  ASSERT_EQ(packed_words(layer), 2u * 17 * 16);
+  std::vector<std::int32_t> packed(packed_words(layer), -1);
+  pack(layer, packed);
+  EXPECT_EQ(packed[17 * 16], 11);
+  EXPECT_EQ(packed[17 * 16 + 16], 5);
+  EXPECT_EQ(packed[17 * 16 + (2 + 5) * 16], 0x4FFFD);
+  EXPECT_EQ(packed[17 * 16 + (2 + 9) * 16], 6);
+  EXPECT_EQ(packed[17 * 16 + 1], 0) << "what the block lacks";
+}
+
+TEST(ConvFirst16, SimdAgrees) {
+  std::mt19937 rng(1);
+  for (const int outputs : {1, 8, 15, 16, 24, 33})
+    for (const int pad_top : {0, 1})
+      for (const int pad_left : {0, 1})
+        for (const Size size : {Size{2, 2}, Size{4, 6}, Size{18, 4}, Size{40, 10}, Size{66, 12}}) {
+          const test::RandomConvFirst16 random(outputs, pad_top, pad_left, rng);
+          ASSERT_TRUE(sums_fit(random.layer, {}));
+          const test::Made16 x(size, 3, rng);
+          test::agree16(
+              "conv_first16", {size.width / 2, size.height / 2}, outputs,
+              [&](Tensor16 y) { ref::conv_first16(random.layer, x.view, y); },
+              [&](Pool& pool, Tensor16 y) { simd::conv_first16(pool, random.layer, x.view, y); });
+          if (HasFailure()) return;
+        }
 }
 
 }  // namespace

@@ -14,5 +14,8 @@ namespace duo {
 namespace ref {
 void depth_to_space16(ConstTensor16 x, Tensor16 y);
 }
+namespace simd {
+void depth_to_space16(Pool& pool, ConstTensor16 x, Tensor16 y);
+}
 
 }  // namespace duo

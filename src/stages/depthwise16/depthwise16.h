@@ -35,6 +35,14 @@ bool sums_fit(const Depthwise16& layer, Range16 x);
 // Source   Howard et al., "MobileNets", 2017, in integers as in matmul16.h
 namespace ref {
 void depthwise16(const Depthwise16& layer, ConstTensor16 x, Tensor16 y);
+/// Of y only rows oy_begin .. oy_end of channels c_begin .. c_end.
+void depthwise16(const Depthwise16& layer, ConstTensor16 x, Tensor16 y, int oy_begin, int oy_end, int c_begin, int c_end);
+}  // namespace ref
+namespace simd {
+void depthwise16(Pool& pool, const Depthwise16& layer, ConstTensor16 x, Tensor16 y);
 }
+
+/// Channels that simd takes together.
+inline constexpr int kDepthwiseGroup = 32;
 
 }  // namespace duo

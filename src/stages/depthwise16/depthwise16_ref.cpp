@@ -22,10 +22,14 @@ bool sums_fit(const Depthwise16& layer, Range16 x) {
 namespace ref {
 
 void depthwise16(const Depthwise16& layer, ConstTensor16 x, Tensor16 y) {
+  depthwise16(layer, x, y, 0, y.height(), 0, layer.channels);
+}
+
+void depthwise16(const Depthwise16& layer, ConstTensor16 x, Tensor16 y, int oy_begin, int oy_end, int c_begin, int c_end) {
   DUO_CHECK(x.channels() == layer.channels && y.channels() == layer.channels);
-  for (int oy = 0; oy < y.height(); ++oy)
+  for (int oy = oy_begin; oy < oy_end; ++oy)
     for (int ox = 0; ox < y.width(); ++ox)
-      for (int c = 0; c < layer.channels; ++c) {
+      for (int c = c_begin; c < c_end; ++c) {
         std::int64_t sum = layer.bias[c];
         for (int i = 0; i < layer.window; ++i)
           for (int j = 0; j < layer.window; ++j) {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tests/agree.h"
+#include "tests/layers16.h"
 
 namespace duo {
 namespace {
@@ -56,6 +56,35 @@ TEST(Depthwise16, SumsFit) {
   w[4] = -32767;
   EXPECT_FALSE(sums_fit(Depthwise16{1, 3, 1, 1, 1, w, bias, shift, {}}, {}));
   EXPECT_TRUE(sums_fit(Depthwise16{1, 3, 1, 1, 1, w, bias, shift, {}}, {0, 32767}));
+}
+
+TEST(Depthwise16, SimdAgrees) {
+  std::mt19937 rng(1);
+  for (const int window : {3, 5})
+    for (const int stride : {1, 2})
+      for (const int channels : {1, 8, 13, 24, 40, 72})
+        for (const Size size : {Size{1, 1}, Size{2, 2}, Size{4, 3}, Size{5, 6}, Size{9, 8}, Size{16, 11}}) {
+          const int pad_top = static_cast<int>(rng() % window), pad_left = static_cast<int>(rng() % window);
+          const test::RandomDepthwise16 random(channels, window, stride, pad_top, pad_left, rng);
+          ASSERT_TRUE(sums_fit(random.layer, {}));
+          const test::Made16 x(size, channels, rng);
+          const Size out{(size.width + stride - 1) / stride, (size.height + stride - 1) / stride};
+          test::agree16(
+              "depthwise16 window " + std::to_string(window) + " stride " + std::to_string(stride), out, channels,
+              [&](Tensor16 y) { ref::depthwise16(random.layer, x.view, y); },
+              [&](Pool& pool, Tensor16 y) { simd::depthwise16(pool, random.layer, x.view, y); });
+          if (HasFailure()) return;
+        }
+}
+
+// Large enough for the threads to share bands of rows and groups of channels.
+TEST(Depthwise16, SimdAgreesInParts) {
+  std::mt19937 rng(2);
+  const test::RandomDepthwise16 random(104, 5, 1, 2, 2, rng);
+  const test::Made16 x({43, 31}, 104, rng);
+  test::agree16(
+      "depthwise16", x.view.size(), 104, [&](Tensor16 y) { ref::depthwise16(random.layer, x.view, y); },
+      [&](Pool& pool, Tensor16 y) { simd::depthwise16(pool, random.layer, x.view, y); });
 }
 
 }  // namespace

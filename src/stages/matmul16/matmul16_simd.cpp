@@ -24,10 +24,6 @@ constexpr int kPanelPixels = 64;  // so many pixels meet a block's weights while
 constexpr int kNear = 16 << 10;   // bytes of weights that stay near while all blocks are used
 constexpr int kChunkPairs = kMatmulChunk / 2;
 
-// The outputs of a tile as 16 bits.
-template <int kVectors>
-using Group = hn::CappedTag<std::int16_t, kVectors * kMatmulLanes>;
-
 // Where vectors of outputs lie in the packed layer, and what they are asked for.
 template <int kVectors>
 struct Columns {
@@ -77,30 +73,12 @@ HWY_INLINE void tile(const Columns<kVectors>& columns, const std::int16_t* x, st
           total[p][v] = hn::Add(total[p][v], hn::ShiftRightSame(hn::Add(sum[p][v], half), columns.fold));
     }
   }
-  const Group<kVectors> group;
-  const auto low = hn::Set(group, columns.range.low), high = hn::Set(group, columns.range.high);
   MatmulV bias[kVectors], shift[kVectors];
   for (int v = 0; v < kVectors; ++v) {
     bias[v] = hn::LoadU(d, columns.bias[v]);
     shift[v] = hn::LoadU(d, columns.shift(v));
   }
-  for (int p = 0; p < kPixels; ++p) {
-    for (int v = 0; v < kVectors; ++v) total[p][v] = hn::Shr(hn::Add(total[p][v], bias[v]), shift[v]);
-    // Demotion saturates, which the range makes good.
-    hn::Vec<Group<kVectors>> values;
-    if constexpr (kVectors == 2)
-      values = demote_both(group, total[p][0], total[p][1]);
-    else
-      values = hn::DemoteTo(group, total[p][0]);
-    values = hn::Clamp(values, low, high);
-    if (count >= kVectors * kMatmulLanes) {
-      hn::StoreU(values, group, y + p * y_step);
-    } else {
-      HWY_ALIGN std::int16_t last[kVectors * kMatmulLanes];
-      hn::Store(values, group, last);
-      std::copy_n(last, count, y + p * y_step);
-    }
-  }
+  for (int p = 0; p < kPixels; ++p) store_outputs(d, total[p], bias, shift, columns.range, y + p * y_step, count);
 }
 
 template <int kPixels, int kVectors>

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "tests/agree.h"
 #include "tests/layers16.h"
 
 namespace duo {
@@ -69,39 +68,30 @@ TEST(Matmul16, Packs) {
 
 TEST(Matmul16, SimdAgrees) {
   std::mt19937 rng(1);
-  Pool one(1), two(2);
   for (const int inputs : {2, 24, 126, 128, 130, 386})
     for (const int outputs : {1, 7, 8, 15, 16, 17, 33, 56, 195}) {
       const test::RandomMatmul16 random(inputs, outputs, rng);
       ASSERT_TRUE(sums_fit(random.layer, {}));
       for (const int pixels : {1, 2, 3, 7, 8, 13, 67}) {
-        const auto x = test::values16(static_cast<std::size_t>(pixels) * inputs, rng);
-        std::vector<std::int16_t> want(static_cast<std::size_t>(pixels) * outputs), got(want.size());
-        ref::matmul16(random.layer, {x.data(), {pixels, 1}, inputs}, {want.data(), {pixels, 1}, outputs});
-        test::each_target([&](const std::string& target) {
-          for (Pool* pool : {&one, &two}) {
-            std::fill(got.begin(), got.end(), std::int16_t{-1});
-            simd::matmul16(*pool, random.layer, {x.data(), {pixels, 1}, inputs}, {got.data(), {pixels, 1}, outputs});
-            test::expect_same16({want.data(), {pixels, 1}, outputs}, {got.data(), {pixels, 1}, outputs},
-                                "matmul16 simd " + target);
-          }
-        });
+        const test::Made16 x({pixels, 1}, inputs, rng);
+        test::agree16(
+            "matmul16 of " + std::to_string(inputs), {pixels, 1}, outputs,
+            [&](Tensor16 y) { ref::matmul16(random.layer, x.view, y); },
+            [&](Pool& pool, Tensor16 y) { simd::matmul16(pool, random.layer, x.view, y); });
         if (HasFailure()) return;
       }
     }
 }
 
 // Large enough for the threads to share pixels, or outputs where there are few pixels.
-TEST(Matmul16, ThreadsAgree) {
+TEST(Matmul16, SimdAgreesInParts) {
   std::mt19937 rng(2);
-  Pool one(1), three(3);
   for (const int pixels : {4, 333}) {
     const test::RandomMatmul16 random(512, 300, rng);
-    const auto x = test::values16(static_cast<std::size_t>(pixels) * 512, rng);
-    std::vector<std::int16_t> want(static_cast<std::size_t>(pixels) * 300), got(want.size());
-    simd::matmul16(one, random.layer, {x.data(), {pixels, 1}, 512}, {want.data(), {pixels, 1}, 300});
-    simd::matmul16(three, random.layer, {x.data(), {pixels, 1}, 512}, {got.data(), {pixels, 1}, 300});
-    EXPECT_EQ(want, got) << pixels << " pixels";
+    const test::Made16 x({pixels, 1}, 512, rng);
+    test::agree16(
+        "matmul16", {pixels, 1}, 300, [&](Tensor16 y) { ref::matmul16(random.layer, x.view, y); },
+        [&](Pool& pool, Tensor16 y) { simd::matmul16(pool, random.layer, x.view, y); });
   }
 }
 

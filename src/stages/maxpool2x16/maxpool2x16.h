@@ -14,5 +14,8 @@ namespace duo {
 namespace ref {
 void maxpool2x16(ConstTensor16 x, Tensor16 y);
 }
+namespace simd {
+void maxpool2x16(Pool& pool, ConstTensor16 x, Tensor16 y);
+}
 
 }  // namespace duo

@@ -16,5 +16,8 @@ namespace duo {
 namespace ref {
 void resize2x16(ConstTensor16 x, Tensor16 y);
 }
+namespace simd {
+void resize2x16(Pool& pool, ConstTensor16 x, Tensor16 y);
+}
 
 }  // namespace duo

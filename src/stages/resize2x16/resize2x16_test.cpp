@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tests/agree.h"
+#include "tests/layers16.h"
 
 namespace duo {
 namespace {
@@ -20,6 +20,18 @@ TEST(Resize2x16, HandWorked) {
   EXPECT_EQ(y.pixel(3, 2)[0], 44);
   EXPECT_EQ(y.pixel(3, 3)[0], 48);
   for (int p = 0; p < 16; ++p) EXPECT_EQ(y.pixel(p)[1], -1);
+}
+
+TEST(Resize2x16, SimdAgrees) {
+  std::mt19937 rng(1);
+  for (const int channels : {1, 8, 15, 48, 77})
+    for (const Size size : {Size{1, 1}, Size{2, 3}, Size{9, 4}, Size{40, 21}}) {
+      const test::Made16 x(size, channels, rng);
+      test::agree16(
+          "resize2x16", {2 * size.width, 2 * size.height}, channels, [&](Tensor16 y) { ref::resize2x16(x.view, y); },
+          [&](Pool& pool, Tensor16 y) { simd::resize2x16(pool, x.view, y); });
+      if (HasFailure()) return;
+    }
 }
 
 }  // namespace

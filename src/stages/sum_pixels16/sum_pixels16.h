@@ -14,5 +14,8 @@ namespace duo {
 namespace ref {
 void sum_pixels16(ConstTensor16 x, int shift, Tensor16 y);
 }
+namespace simd {
+void sum_pixels16(Pool& pool, ConstTensor16 x, int shift, Tensor16 y);
+}
 
 }  // namespace duo
