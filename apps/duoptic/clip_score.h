@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "clip.h"
+#include "duoptic/person.h"
 
 namespace duo::app {
 

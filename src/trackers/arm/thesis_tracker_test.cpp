@@ -80,15 +80,15 @@ TEST_F(ThesisTracking, LosesWhatDisappears) {
 }
 
 TEST_F(ThesisTracking, RefusesGrayAndHoles) {
-  const Selection gray = on({20, 20}, {160, 100}, {220, 90});
+  const Selection gray = on({220, 90}, {160, 100}, {20, 20});
   const auto on_wall = tracker_->select(paint({}), {&gray, 1});
   ASSERT_FALSE(on_wall);
-  EXPECT_NE(on_wall.error().what.find("no colour at the right_hand click"), std::string::npos) << on_wall.error().what;
+  EXPECT_NE(on_wall.error().what.find("no colour at the right_shoulder click"), std::string::npos) << on_wall.error().what;
   paint({{{20, 20}, kSkin}});
   frame_.disparity.d_q4.at(20, 20) = Disparity::kNone;
   const auto on_hole = tracker_->select(frame_, {&gray, 1});
   ASSERT_FALSE(on_hole);
-  EXPECT_NE(on_hole.error().what.find("no depth at the right_hand click"), std::string::npos) << on_hole.error().what;
+  EXPECT_NE(on_hole.error().what.find("no depth at the right_shoulder click"), std::string::npos) << on_hole.error().what;
 }
 
 }  // namespace
