@@ -98,6 +98,9 @@ struct EngineOptions {
   void check() const;
 };
 
+/// --size WxH, like 640x480; a usage error where it is none.
+CLI::Option* add_size_option(CLI::App& app, Size& size, const char* help);
+
 /// Prints a warning or a note of progress as one line on stderr.
 void say(const CLI::App& app, const std::string& line);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <thread>
 
 #include "command.h"
@@ -121,6 +122,15 @@ Setup EngineOptions::setup() const {
   for (const auto& [name, value] : kDenoise)
     if (name == denoise) setup.denoise = value;
   return setup;
+}
+
+CLI::Option* add_size_option(CLI::App& app, Size& size, const char* help) {
+  const auto parse = [&size](const std::string& text) {
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%5dx%5d%c", &size.width, &size.height, &rest) != 2 || size.empty())
+      throw CLI::ValidationError("--size", fmt::format("'{}' is not WIDTHxHEIGHT, like 640x480", text));
+  };
+  return app.add_option_function<std::string>("--size", parse, help)->type_name("WxH");
 }
 
 }  // namespace duo::app

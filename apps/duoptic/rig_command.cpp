@@ -28,11 +28,14 @@ constexpr char kRefineFooter[] =
     "Example:\n"
     "  duoptic rig refine rig.json left.avi right.avi -o refined.json";
 constexpr char kImportFooter[] =
-    "Reads our JSON, OpenCV's YAML and JSON, Kalibr's camchain (pinhole-radtan), and ROS camera_info: one YAML with both\n"
-    "cameras, a folder with left.yaml and right.yaml, or two files.\n\n"
+    "Reads our JSON; OpenCV's YAML, JSON and XML, in one file or as intrinsics and extrinsics; Kalibr's camchain\n"
+    "(pinhole-radtan); ROS camera_info as one YAML with both cameras, a folder with left.yaml and right.yaml, or two files;\n"
+    "Middlebury's calib.txt; KITTI's calib_cam_to_cam.txt and calib.txt (the rectified colour pair); ZED's SN*.conf.\n\n"
     "Examples:\n"
     "  duoptic rig import camchain.yaml -o rig.json\n"
-    "  duoptic rig import left.yaml right.yaml -o rig.json";
+    "  duoptic rig import left.yaml right.yaml -o rig.json\n"
+    "  duoptic rig import intrinsics.yml extrinsics.yml --size 640x480 -o rig.json\n"
+    "  duoptic rig import SN1234.conf --size 1280x720 -o rig.json";
 constexpr char kExportFooter[] =
     "opencv: FILE.yml, .yaml or .json with M1 D1 M2 D2 R T R1 R2 P1 P2 Q. ros: FILE.yaml holds both cameras' camera_info, any\n"
     "other name is a folder for left.yaml and right.yaml. kalibr: FILE.yaml, a camchain.\n\n"
@@ -45,6 +48,7 @@ const std::map<std::string, RigFormat> kFormats = {
 
 struct Options {
   std::string rig, left, right, output, format = "opencv";
+  Size size;
   int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   bool json = false;
 };
@@ -111,13 +115,14 @@ Result<Exit> refine(const Options& options, const CLI::App& app) {
   return found.after.cut ? Exit::kCut : Exit::kOk;
 }
 
-Result<Exit> import_file(const Options& options) {
-  DUO_TRY_ASSIGN(const Rig rig, import_rig(options.left, options.right));
-  DUO_TRY(save_rig(rig, options.output));
+Result<Exit> import_file(const Options& options, const CLI::App& app) {
+  DUO_TRY_ASSIGN(const RigImport read, import_rig(options.left, options.right, options.size));
+  DUO_TRY(save_rig(read.rig, options.output));
   if (options.json)
-    print_json({{"rig", to_json(rig)}, {"file", options.output}});
+    print_json({{"rig", to_json(read.rig)}, {"file", options.output}, {"note", read.note}});
   else
-    fmt::print("{}: {}\n", options.output, describe(rig));
+    fmt::print("{}: {}\n", options.output, describe(read.rig));
+  if (!read.note.empty()) say(app, "note: " + read.note);
   return Exit::kOk;
 }
 
@@ -170,7 +175,8 @@ Subcommands add_subcommands(CLI::App& rig, Options& options) {
 
   CLI::App* import = rig.add_subcommand("import", "Read another program's rig");
   import->add_option("FILE", options.left, "Calibration of both cameras, or of the left one (ROS)")->required();
-  import->add_option("RIGHT", options.right, "Calibration of the right camera (ROS)");
+  import->add_option("RIGHT", options.right, "Calibration of the right camera (ROS), or the pose (OpenCV's extrinsics)");
+  add_size_option(*import, options.size, "Of the pictures, for files that do not say it or hold several");
   add_output(*import, "Rig file", true);
   add_json(*import);
   import->footer(kImportFooter);
@@ -194,7 +200,7 @@ Command add(CLI::App& app) {
   return {sub, [options, sub, subs]() -> Result<Exit> {
             if (subs.check->parsed()) return check(*options, *sub);
             if (subs.refine->parsed()) return refine(*options, *sub);
-            if (subs.import->parsed()) return import_file(*options);
+            if (subs.import->parsed()) return import_file(*options, *sub);
             return export_file(*options, *sub);
           }};
 }

@@ -27,20 +27,11 @@ const std::map<std::string, SyntheticArm> kArms = {
 
 struct Options {
   SyntheticClipSetup clip;
-  std::string size = "640x480", arm = "auto", folder;
+  std::string arm = "auto", folder;
   int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   double skew_ms = 0;
   bool quiet = false;
 };
-
-/// "640x480" as a size; throws what CLI11 reports as a usage error.
-Size parse_size(const std::string& text) {
-  Size size;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%5dx%5d%c", &size.width, &size.height, &rest) != 2 || size.empty())
-    throw CLI::ValidationError("--size", fmt::format("'{}' is not WIDTHxHEIGHT, like 640x480", text));
-  return size;
-}
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
   const auto start = std::chrono::steady_clock::now();
@@ -70,7 +61,7 @@ Command add(CLI::App& app) {
   sub->add_option("--frames", options->clip.frames, "How many, 30 a second; 0: the script once")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
-  sub->add_option("--size", options->size, "Of one picture")->type_name("WxH")->capture_default_str();
+  add_size_option(*sub, options->clip.size, "Of one picture")->default_str("640x480");
   sub->add_option("--seed", options->clip.seed, "Person, clothes, room, rig and noise")->capture_default_str();
   sub->add_option("--arm", options->arm, "The person's own left or right; auto: by the seed")
       ->check(CLI::IsMember({"auto", "left", "right"}))
@@ -85,7 +76,6 @@ Command add(CLI::App& app) {
   sub->add_flag("--quiet", options->quiet, "No progress on stderr");
   sub->add_option("-o,--output", options->folder, "Folder for the clip")->type_name("DIR")->required();
   sub->parse_complete_callback([options] {
-    options->clip.size = parse_size(options->size);
     options->clip.arm = kArms.at(options->arm);
     options->clip.skew_s = options->skew_ms * 1e-3;
   });

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "duoptic/rig.h"
@@ -15,11 +16,17 @@ enum class RigFormat : std::uint8_t {
   kKalibr,  // camchain.yaml, pinhole-radtan
 };
 
-/// Reads a rig from all that load_rig() reads, from a folder that holds ROS's left.yaml and right.yaml, or from the two
-/// camera_info files `file` and `right`.
+struct RigImport {
+  Rig rig;
+  std::string note;  // what was assumed and may be wrong; empty: nothing
+};
+
+/// Reads a rig from all that load_rig() reads, from a folder that holds ROS's left.yaml and right.yaml, or from two files:
+/// ROS's camera_info of either camera, or OpenCV's intrinsics and extrinsics. `size`: of the pictures, for files that do not
+/// say it or hold calibrations of several sizes; empty: not known.
 ///
-/// Errors  those of load_rig(); a second file that is no camera_info
-Result<Rig> import_rig(const std::filesystem::path& file, const std::filesystem::path& right = {});
+/// Errors  those of load_rig(); two files that are no such pair; `size` is needed
+Result<RigImport> import_rig(const std::filesystem::path& file, const std::filesystem::path& right = {}, Size size = {});
 
 struct RigExport {
   std::vector<std::filesystem::path> files;

@@ -21,19 +21,22 @@ int bracket_depth(std::string_view text) {
   return deepest;
 }
 
-Result<Rig> translate(std::string_view text, const std::string& name) {
-  DUO_TRY_ASSIGN(text, rig_text(text, name));
-  if (text.front() == '<') return rig_error(name, "XML is not read; save the calibration as .yml or .json");
-  if (text.front() != '{') return rig_from_yaml(text, name);
-
-  const auto json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (json.is_discarded()) return rig_error(name, "the JSON is broken or cut short; write the file again");
-  return json.contains("schema") ? rig_from_json(json, name) : rig_from_opencv_json(json, name);
+/// What the first bytes of files say that are no text.
+std::string_view kind_of_bytes(std::string_view bytes) {
+  if (bytes.starts_with("PK\x03\x04")) return "a .zip, as NumPy's .npz is";
+  if (bytes.starts_with("\x93NUMPY")) return "NumPy's .npy";
+  if (bytes.starts_with("\x1F\x8B")) return "compressed by gzip";
+  if (bytes.starts_with("MATLAB")) return "MATLAB's .mat";
+  if (bytes.starts_with(std::string_view("\x80", 1))) return "a Python pickle";
+  return {};
 }
 
 }  // namespace
 
 Result<std::string_view> rig_text(std::string_view text, const std::string& name) {
+  if (const std::string_view kind = kind_of_bytes(text); !kind.empty())
+    return rig_error(name, "this is {}, which is not read; write the calibration as text, with OpenCV's FileStorage for one",
+                     kind);
   const std::size_t start = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");  // spaces and a byte order mark
   if (start == text.npos) return rig_error(name, "the file is empty; give a calibration of both cameras");
   text.remove_prefix(start);
@@ -42,8 +45,20 @@ Result<std::string_view> rig_text(std::string_view text, const std::string& name
   return text;
 }
 
+Result<Rig> translate_rig(std::string_view text, const std::string& name, Size size) {
+  DUO_TRY_ASSIGN(text, rig_text(text, name));
+  if (is_rig_of_lines(text)) return rig_from_lines(text, name, size);
+  if (text.front() != '{' && text.front() != '<') return rig_from_yaml(text, name, size);
+  if (text.front() == '{') {
+    const auto json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+    if (!json.is_discarded() && json.contains("schema")) return rig_from_json(json, name);
+  }
+  DUO_TRY_ASSIGN(const OpencvNumbers numbers, opencv_numbers(text, name));
+  return rig_from_opencv(numbers, name, size);
+}
+
 Result<Rig> parse_rig(std::string_view text, const std::string& name) {
-  DUO_TRY_ASSIGN(Rig rig, translate(text, name));
+  DUO_TRY_ASSIGN(Rig rig, translate_rig(text, name, {}));
   DUO_TRY(check_rig(rig, name));
   return rig;
 }

@@ -34,11 +34,13 @@ Result<CameraInfo> read(const YAML::Node& map, const char* side, const std::stri
   const auto width = reader.numbers(key({"image_width", "width"}), {1}, "it is the width of the pictures in px");
   const auto height = reader.numbers(key({"image_height", "height"}), {1}, "it is the height of the pictures in px");
   const auto k = reader.numbers(key({"camera_matrix", "K", "k"}), {9}, "a 3x3 camera matrix is needed");
-  const auto d = reader.numbers(key({"distortion_coefficients", "D", "d"}), {4, 5, 8}, "plumb_bob has 5 coefficients");
+  const auto d =
+      reader.numbers(key({"distortion_coefficients", "D", "d"}), {0, 4, 5, 8, 12, 14}, "plumb_bob has 5 coefficients");
   const auto r = reader.numbers(key({"rectification_matrix", "R", "r"}), {9}, "calibrate both cameras together");
   const auto p = reader.numbers(key({"projection_matrix", "P", "p"}), {12}, "calibrate both cameras together");
   const std::string model = reader.text("distortion_model", "plumb_bob and rational_polynomial are read");
-  if (reader.wrong().empty() && model != kFiveModel && model != kEightModel)
+  const bool none = model.empty() && d.empty();  // a picture that comes rectified
+  if (reader.wrong().empty() && !none && model != kFiveModel && model != kEightModel)
     reader.complain(fmt::format("distortion model '{}' is not read; plumb_bob and rational_polynomial are", model));
   if (!reader.wrong().empty()) return rig_error(name, "{}", reader.wrong());
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
@@ -51,8 +53,11 @@ Result<CameraInfo> read(const YAML::Node& map, const char* side, const std::stri
                  .cx_px = k[2],
                  .cy_px = k[5]};
   if (!reader.wrong().empty()) return rig_error(name, "{}", reader.wrong());
-  std::copy(d.begin(), d.end(), info.camera.distortion.begin());
-  std::copy(r.begin(), r.end(), info.rectified_from_camera.m.begin());
+  if (const std::string wrong = put_coefficients(d, info.camera); !wrong.empty())
+    return rig_error(name, "{} camera: the distortion {}", side, wrong);
+  // Drivers of pictures that come rectified, and simulators, leave R empty: it turns nothing.
+  if (std::any_of(r.begin(), r.end(), [](double value) { return value != 0; }))
+    std::copy(r.begin(), r.end(), info.rectified_from_camera.m.begin());
   std::copy(p.begin(), p.end(), info.projection.begin());
   if (reader.key_of({"camera_name"}) == "camera_name") info.name = reader.text("camera_name", "");
   return info;
@@ -70,9 +75,9 @@ bool is_ros_camera(const YAML::Node& map) {
          (map["camera_matrix"].IsDefined() || map["K"].IsDefined() || map["k"].IsDefined());
 }
 
-Result<Rig> rig_from_ros(const YAML::Node& left_map, const YAML::Node& right_map, const std::string& name) {
-  DUO_TRY_ASSIGN(const CameraInfo left, read(left_map, "left", name));
-  DUO_TRY_ASSIGN(const CameraInfo right, read(right_map, "right", name));
+namespace {
+
+Result<Rig> rig_of(const CameraInfo& left, const CameraInfo& right, const std::string& name) {
   if (left.projection[3] != 0)
     return rig_error(name, "the first camera's projection matrix has a baseline ({}); give the left camera first",
                      left.projection[3]);
@@ -90,6 +95,18 @@ Result<Rig> rig_from_ros(const YAML::Node& left_map, const YAML::Node& right_map
   rig.right_name = right.name;
   rig.right_from_left = {right_from_rectified * left.rectified_from_camera, right_from_rectified * t_in_rectified_m};
   return rig;
+}
+
+}  // namespace
+
+Result<Rig> rig_from_ros(const YAML::Node& left_map, const YAML::Node& right_map, const std::string& name) {
+  try {
+    DUO_TRY_ASSIGN(const CameraInfo left, read(left_map, "left", name));
+    DUO_TRY_ASSIGN(const CameraInfo right, read(right_map, "right", name));
+    return rig_of(left, right, name);
+  } catch (const YAML::Exception& e) {  // nodes that look sound can still throw when they are asked for what they are not
+    return rig_error(name, "the YAML is broken ({}); write the file again", e.msg);
+  }
 }
 
 std::string ros_from_camera(const Camera& camera, const std::string& camera_name, const Mat3& rectified_from_camera,

@@ -168,15 +168,15 @@ TEST(Rig, DoesNotSaveWhatItWouldRefuse) {
 TEST(Rig, RefusesBrokenText) {
   expect_text_refused("", "empty");
   expect_text_refused(" \n\t", "empty");
-  expect_text_refused("hello", "neither JSON nor OpenCV YAML");
-  expect_text_refused("<?xml version=\"1.0\"?>", "XML is not read");
+  expect_text_refused("hello", "no rig file of a known kind");
+  expect_text_refused("<?xml version=\"1.0\"?>", "XML is broken or cut short");
   expect_text_refused("{\"schema\": \"duoptic.rig\", \"ver", "cut short");
   expect_text_refused("{\"schema\": \"other\", \"version\": 1}", "schema");
   expect_text_refused("{\"schema\": \"duoptic.rig\", \"version\": 2}", "version 1");
   expect_text_refused("{\"schema\": \"duoptic.rig\", \"version\": 1}", "'left/width' is missing");
   expect_text_refused("{\"schema\": \"duoptic.rig\", \"version\": 1, \"left\": {\"width\": \"a\"}}", "must be a whole number");
   expect_text_refused("{}", "no camera matrices");
-  expect_text_refused("%YAML:1.0", "neither JSON nor OpenCV YAML");
+  expect_text_refused("%YAML:1.0", "no rig file of a known kind");
   expect_text_refused("%YAML:1.0\n---\na: 1\n", "no camera matrices");
   const std::string yaml = good_yaml();
   expect_text_refused(yaml.substr(0, yaml.find("R: ") - 20), "cut short");

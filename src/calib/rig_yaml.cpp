@@ -27,23 +27,6 @@ std::vector<Document> part(std::string_view text) {
   return out;
 }
 
-/// Empty documents are left out.
-Result<std::vector<YAML::Node>> documents_of(std::string_view text, const std::string& name) {
-  std::vector<YAML::Node> maps;
-  for (const Document& document : part(text)) {
-    try {
-      const YAML::Node node = YAML::Load(document.text);
-      if (!node.IsNull()) maps.push_back(node);
-    } catch (const YAML::Exception& e) {
-      return rig_error(name, "the YAML is broken or cut short at line {}; write the file again",
-                       e.mark.line + document.first_line);
-    }
-  }
-  if (maps.empty() || !std::all_of(maps.begin(), maps.end(), [](const YAML::Node& node) { return node.IsMap(); }))
-    return rig_error(name, "this is neither JSON nor OpenCV YAML, ROS camera_info or Kalibr camchain; give a calibration file");
-  return maps;
-}
-
 /// Nodes that look sound can still throw when they are asked for what they are not.
 template <class Read>
 Result<Rig> guarded(const std::string& name, Read&& read) {
@@ -56,27 +39,35 @@ Result<Rig> guarded(const std::string& name, Read&& read) {
 
 }  // namespace
 
-Result<Rig> rig_from_yaml(std::string_view text, const std::string& name) {
-  DUO_TRY_ASSIGN(const std::vector<YAML::Node> documents, documents_of(text, name));
+Result<std::vector<YAML::Node>> yaml_documents(std::string_view text, const std::string& name) {
+  std::vector<YAML::Node> maps;
+  for (const Document& document : part(text)) {
+    try {
+      const YAML::Node node = YAML::Load(document.text);
+      if (!node.IsNull()) maps.push_back(node);
+    } catch (const YAML::Exception& e) {
+      return rig_error(name, "the YAML is broken or cut short at line {}; write the file again",
+                       e.mark.line + document.first_line);
+    }
+  }
+  if (maps.empty() || !std::all_of(maps.begin(), maps.end(), [](const YAML::Node& node) { return node.IsMap(); }))
+    return rig_error(
+        name,
+        "this is no rig file of a known kind (ours, OpenCV, ROS, Kalibr, Middlebury, KITTI, ZED); give a calibration file");
+  return maps;
+}
+
+Result<Rig> rig_from_yaml(std::string_view text, const std::string& name, Size size) {
+  DUO_TRY_ASSIGN(const std::vector<YAML::Node> documents, yaml_documents(text, name));
   const YAML::Node& first = documents.front();
   return guarded(name, [&]() -> Result<Rig> {
     if (first["cam0"].IsDefined()) return rig_from_kalibr(first, name);
-    if (!is_ros_camera(first)) return rig_from_opencv_yaml(first, name);
+    if (!is_ros_camera(first)) {
+      DUO_TRY_ASSIGN(const OpencvNumbers numbers, opencv_numbers(text, name));
+      return rig_from_opencv(numbers, name, size);
+    }
     if (documents.size() == 2) return rig_from_ros(first, documents[1], name);
     return rig_error(name, "this is the camera_info of one camera; give both files: duoptic rig import LEFT RIGHT");
-  });
-}
-
-Result<Rig> rig_from_ros_texts(std::string_view left, std::string_view right, const std::string& left_name,
-                               const std::string& right_name) {
-  DUO_TRY_ASSIGN(left, rig_text(left, left_name));
-  DUO_TRY_ASSIGN(right, rig_text(right, right_name));
-  DUO_TRY_ASSIGN(const std::vector<YAML::Node> a, documents_of(left, left_name));
-  DUO_TRY_ASSIGN(const std::vector<YAML::Node> b, documents_of(right, right_name));
-  return guarded(right_name, [&]() -> Result<Rig> {
-    if (!is_ros_camera(a.front())) return rig_error(left_name, "two files are a pair of ROS camera_info; this is none");
-    if (!is_ros_camera(b.front())) return rig_error(right_name, "two files are a pair of ROS camera_info; this is none");
-    return rig_from_ros(a.front(), b.front(), left_name);
   });
 }
 

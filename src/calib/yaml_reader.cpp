@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 namespace duo {
@@ -22,6 +23,21 @@ bool append_numbers(const YAML::Node& node, int depth, std::vector<double>& out)
 bool read_numbers(const YAML::Node& node, std::vector<double>& out) {
   const YAML::Node data = node.IsMap() ? node["data"] : node;
   return data.IsDefined() && append_numbers(data, 0, out);
+}
+
+bool read_numbers(std::string_view text, std::vector<double>& out) {
+  constexpr std::string_view kBetween = " \t\r\n,;[]";
+  while (true) {
+    text.remove_prefix(std::min(text.find_first_not_of(kBetween), text.size()));
+    if (text.empty()) return true;
+    if (text.front() == '+') text.remove_prefix(1);
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (error != std::errc() || out.size() == kMaxNumbers || (!text.empty() && kBetween.find(text.front()) == kBetween.npos))
+      return false;
+    out.push_back(number);
+  }
 }
 
 std::string YamlReader::key_of(std::initializer_list<const char*> spellings) const {

@@ -5,6 +5,7 @@
 
 #include <initializer_list>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace duo {
@@ -14,6 +15,8 @@ inline constexpr std::size_t kMaxNumbers = 16;
 
 /// A number, a list of numbers, rows of numbers, or a map with such a list as `data`. False when the node is something else.
 bool read_numbers(const YAML::Node& node, std::vector<double>& out);
+/// The same for numbers parted by white space, commas, semicolons or brackets.
+bool read_numbers(std::string_view text, std::vector<double>& out);
 
 class YamlReader {
  public:

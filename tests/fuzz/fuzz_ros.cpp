@@ -1,4 +1,5 @@
-// Any bytes as a pair of ROS camera_info files, parted by the first line of dashes.
+// Any bytes as two rig files: a pair of ROS camera_info, or OpenCV's intrinsics and extrinsics, parted by the first line of
+// dashes.
 #include <cstdint>
 #include <string_view>
 
@@ -7,7 +8,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const std::size_t end = std::min(text.find("---\n"), size);
-  const auto rig = duo::rig_from_ros_texts(text.substr(0, end), text.substr(std::min(end + 4, size)), "left", "right");
-  if (rig && duo::check_rig(*rig, "fuzz")) duo::fuzz::check_accepted(*rig);
+  const auto rig = duo::rig_from_two_texts(text.substr(0, end), text.substr(std::min(end + 4, size)), "left", "right");
+  if (rig && duo::check_rig(rig->rig, "fuzz")) duo::fuzz::check_accepted(rig->rig);
   return 0;
 }
