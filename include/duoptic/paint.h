@@ -68,6 +68,7 @@ struct Label {
   std::string sigma;  // "2 cm"; empty when lost
   JointState state = JointState::kLost;
 };
+/// The ends of limbs come first.
 std::vector<Label> labels_of(const Person& person);
 
 /// The joints that captions explain the shades of: each part of the body once, of whichever side.

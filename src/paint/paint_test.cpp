@@ -40,9 +40,9 @@ TEST(Shapes, LabelsByHand) {
   const Moment moment({320, 240});
   const std::vector<Label> labels = labels_of(moment.people[0]);
   ASSERT_EQ(labels.size(), 3u);
-  EXPECT_EQ(labels[kShoulder].text, "shoulder lost");
-  EXPECT_EQ(labels[kElbow].text + " " + labels[kElbow].sigma, "elbow 2.00 m 25 cm");
-  EXPECT_EQ(labels[kHand].text + " " + labels[kHand].sigma, "hand 1.50 m 2 cm");  // 1.25 cm, rounded up
+  EXPECT_EQ(labels[2].text, "shoulder lost");
+  EXPECT_EQ(labels[1].text + " " + labels[1].sigma, "elbow 2.00 m 25 cm");
+  EXPECT_EQ(labels[0].text + " " + labels[0].sigma, "hand 1.50 m 2 cm");  // 1.25 cm, rounded up
   Person body = person_with(kBody, 3);
   body.joints[0].state = JointState::kSeen;
   body.sum_up();

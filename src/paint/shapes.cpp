@@ -46,7 +46,7 @@ std::vector<Label> labels_of(const Person& person) {
     return {{fmt::format("person {}: {} of {} joints seen", person.id, seen, person.count()), "",
              static_cast<JointState>(person.presence)}};
   }
-  for (std::size_t j = 0; j < person.count(); ++j) {
+  for (std::size_t j = person.count(); j-- > 0;) {
     const Joint& joint = person.joints[j];
     const std::string_view part = part_of(person.skeleton->joints[j].id);
     if (joint.state == JointState::kLost)
