@@ -72,6 +72,9 @@ Command add(CLI::App& app);
 namespace play {
 Command add(CLI::App& app);
 }
+namespace detect {
+Command add(CLI::App& app);
+}
 namespace devices {
 Command add(CLI::App& app);
 }
