@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::uint16_t kHalf = 16384;  // a probability of 0.5
 constexpr int kSearchEvery = 4;         // pictures, while somebody is followed
+constexpr int kLooks = 3;               // at what was found
 
 /// The whole picture first, then squares of 0.6 of its shorter side that overlap by a half: people too small for the whole.
 std::vector<Window> parts_of(Size size) {
@@ -32,17 +33,29 @@ PointQ8 sum_of(const SeenBody& body, std::initializer_list<BodyPoint> points) {
   return sum;
 }
 
+/// Four times the torso's centre.
+PointQ8 four_centres(const SeenBody& body) {
+  using enum BodyPoint;
+  return sum_of(body, {kLeftShoulder, kRightShoulder, kLeftHip, kRightHip});
+}
+
 std::int64_t square(std::int64_t x, std::int64_t y) { return x * x + y * y; }
+
+/// Whether the torso moved by less than 1/40 of half the region between two looks, and is there in the second.
+bool rests(const SeenBody& first, const SeenBody& second) {
+  const PointQ8 a = four_centres(first), b = four_centres(second);
+  const std::int64_t half = half_side(second.next);
+  return second.score_q15 >= kHalf && 100 * square(a.x - b.x, a.y - b.y) < half * half;
+}
 
 /// Two bodies whose torsos' centres are less than half a torso apart are one.
 bool same_body(const SeenBody& a, const SeenBody& b) {
   using enum BodyPoint;
-  const auto centre = [](const SeenBody& body) { return sum_of(body, {kLeftShoulder, kRightShoulder, kLeftHip, kRightHip}); };
   const auto torso = [](const SeenBody& body) {
     const PointQ8 up = sum_of(body, {kLeftShoulder, kRightShoulder}), down = sum_of(body, {kLeftHip, kRightHip});
     return square(up.x - down.x, up.y - down.y);  // four times the square of its length
   };
-  const PointQ8 ca = centre(a), cb = centre(b);  // four times
+  const PointQ8 ca = four_centres(a), cb = four_centres(b);
   return square(ca.x - cb.x, ca.y - cb.y) < std::max(torso(a), torso(b));
 }
 
@@ -78,10 +91,12 @@ struct PeopleFinder::Memory {
   std::vector<Window> parts;
   std::vector<FoundPerson> finds;
   std::vector<Look> looks;
-  std::vector<SeenBody> bodies, kept;
+  std::vector<TurnedSquare> regions;
+  std::vector<SeenBody> bodies, before, kept;
   std::vector<SeenHand> hands;
+  std::vector<std::optional<SeenHand>*> owners;  // of each of them
   std::vector<SeenPerson> people;
-  std::int64_t picture = 0, searches = 0;
+  std::int64_t picture = 0, searches = 0;  // how many
 
   void begin(View<const Rgb8> picture_now) {
     if (!(picture_now.size() == size)) {
@@ -94,31 +109,48 @@ struct PeopleFinder::Memory {
   /// Adds who is found in a part and is no one of before; of one person the surest find stays.
   void search(View<const Rgb8> picture_now, const Window& part) {
     for (const FoundPerson& found : detector.find(picture_now, part)) {
-      const auto before =
+      const auto same =
           std::ranges::find_if(finds, [&](const FoundPerson& other) { return same_find(found.region, other.region); });
-      if (before == finds.end())
+      if (same == finds.end())
         finds.push_back(found);
-      else if (before->score_q15 < found.score_q15)
-        *before = found;
+      else if (same->score_q15 < found.score_q15)
+        *same = found;
     }
   }
 
-  void look_at(View<const Rgb8> picture_now, std::span<const TurnedSquare> regions) {
+  /// Looks at what was found and then where each look says to look next: a person's region comes to rest, what is made up of
+  /// parts of several people wanders. Leaves those that rest in `bodies`.
+  void settle(View<const Rgb8> picture_now) {
+    regions.clear();
+    for (const FoundPerson& found : finds) regions.push_back(found.region);
+    for (int i = 0; i < kLooks; ++i) {
+      before.swap(bodies);
+      look_at(picture_now);
+      for (std::size_t k = 0; k < bodies.size(); ++k) regions[k] = bodies[k].next;
+    }
+    std::size_t kept_count = 0;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (rests(before[i], bodies[i])) bodies[kept_count++] = bodies[i];
+    bodies.resize(kept_count);
+  }
+
+  /// Looks at `regions`.
+  void look_at(View<const Rgb8> picture_now) {
     looks.clear();
     for (const TurnedSquare& region : regions) looks.push_back({picture_now, region});
     bodies.resize(looks.size());
     detector.bodies(looks, bodies);
   }
 
-  /// Keeps the bodies that are there, each once: of two that are one the surer, earlier ones first.
+  /// Adds the bodies that are there to those kept, each once: of two that are one the surer.
   void keep() {
     for (const SeenBody& body : bodies) {
       if (body.score_q15 < kHalf) continue;
-      const auto before = std::ranges::find_if(kept, [&](const SeenBody& other) { return same_body(body, other); });
-      if (before == kept.end())
+      const auto other = std::ranges::find_if(kept, [&](const SeenBody& each) { return same_body(body, each); });
+      if (other == kept.end())
         kept.push_back(body);
-      else if (before->score_q15 < body.score_q15)
-        *before = body;
+      else if (other->score_q15 < body.score_q15)
+        *other = body;
     }
     if (kept.size() > options.most) kept.resize(options.most);
   }
@@ -132,7 +164,7 @@ struct PeopleFinder::Memory {
 
   void add_hands(View<const Rgb8> picture_now) {
     looks.clear();
-    std::vector<std::optional<SeenHand>*> owners;
+    owners.clear();
     for (SeenPerson& person : people)
       for (const bool left : {true, false})
         if (const auto region = hand_region(person.body, left, size)) {
@@ -155,15 +187,8 @@ std::span<const SeenPerson> PeopleFinder::look(View<const Rgb8> picture) {
   m.finds.clear();
   m.kept.clear();
   for (const Window& part : m.parts) m.search(picture, part);
-  std::ranges::stable_sort(m.finds, std::greater{}, &FoundPerson::score_q15);
-  std::vector<TurnedSquare> regions;
-  for (const FoundPerson& found : m.finds) regions.push_back(found.region);
-  m.look_at(picture, regions);
-  // The body's own region is better than the detector's.
-  regions.clear();
-  for (const SeenBody& body : m.bodies)
-    if (body.score_q15 >= kHalf) regions.push_back(body.next);
-  m.look_at(picture, regions);
+  std::ranges::sort(m.finds, [](const FoundPerson& a, const FoundPerson& b) { return a.score_q15 > b.score_q15; });
+  m.settle(picture);
   m.keep();
   return m.finish(picture);
 }
@@ -172,18 +197,17 @@ std::span<const SeenPerson> PeopleFinder::follow(View<const Rgb8> picture) {
   Memory& m = *memory_;
   m.begin(picture);
   m.kept.clear();
-  std::vector<TurnedSquare> regions;
-  for (const SeenPerson& person : m.people) regions.push_back(person.body.next);
-  m.look_at(picture, regions);
+  m.regions.clear();
+  for (const SeenPerson& person : m.people) m.regions.push_back(person.body.next);
+  m.look_at(picture);
   m.keep();
   if (m.picture++ % kSearchEvery == 0 || m.kept.empty()) {
     m.finds.clear();
     m.search(picture, m.parts[static_cast<std::size_t>(m.searches++) % m.parts.size()]);
-    regions.clear();
-    for (const FoundPerson& found : m.finds)
-      if (std::ranges::none_of(m.kept, [&](const SeenBody& body) { return same_find(body.next, found.region); }))
-        regions.push_back(found.region);
-    m.look_at(picture, regions);
+    std::erase_if(m.finds, [&](const FoundPerson& found) {
+      return std::ranges::any_of(m.kept, [&](const SeenBody& body) { return same_find(body.next, found.region); });
+    });
+    m.settle(picture);
     m.keep();
   }
   return m.finish(picture);

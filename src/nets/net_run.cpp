@@ -1,6 +1,5 @@
 #include "nets/net_run.h"
 
-#include "core/check.h"
 #include "stages/depth_to_space16/depth_to_space16.h"
 #include "stages/maxpool2x16/maxpool2x16.h"
 #include "stages/resize2x16/resize2x16.h"
@@ -23,14 +22,40 @@ struct RunPlain {
   void operator()(const DepthToSpace16&) const { ref::depth_to_space16(x, y); }
 };
 
+/// One layer on the processor's vectors.
+struct RunVectors {
+  Pool& pool;
+  ConstTensor16 x, b;
+  Tensor16 y;
+  void operator()(const ConvFirst16& layer) const { simd::conv_first16(pool, layer, x, y); }
+  void operator()(const Matmul16& layer) const { simd::matmul16(pool, layer, x, y); }
+  void operator()(const Depthwise16& layer) const { simd::depthwise16(pool, layer, x, y); }
+  void operator()(const Add16& layer) const { simd::add16(pool, layer, x, b, y); }
+  void operator()(const Resize2x16&) const { simd::resize2x16(pool, x, y); }
+  void operator()(const Maxpool2x16&) const { simd::maxpool2x16(pool, x, y); }
+  void operator()(const SumPixels16& layer) const { simd::sum_pixels16(pool, x, layer.shift, y); }
+  void operator()(const DepthToSpace16&) const { simd::depth_to_space16(pool, x, y); }
+};
+
+/// Puts a layer's constants in the order of lanes, once, into `memory`; nothing for layers that take them as they are.
+template <class Layer>
+void pack_layer(Layer& layer, std::vector<std::int32_t>& memory) {
+  if constexpr (requires { pack(layer, std::span<std::int32_t>()); }) {
+    memory.resize(packed_words(layer));
+    pack(layer, memory);
+    layer.packed = memory;
+  }
+}
+
 }  // namespace
 
-struct NetRun::Prepared {};
-
 NetRun::NetRun(const Net& net, Loops loops)
-    : net_(&net), loops_(loops), plan_(plan_memory(net)), memory_({static_cast<int>(plan_.count) + 64, 1}) {}
-NetRun::~NetRun() = default;
-NetRun::NetRun(NetRun&&) noexcept = default;
+    : net_(&net), loops_(loops), plan_(plan_memory(net)), memory_({static_cast<int>(plan_.count) + 64, 1}) {
+  for (const NetLayer& layer : net.layers) works_.push_back(layer.work);
+  packed_.resize(works_.size());
+  if (loops_ == Loops::kVectors)
+    for (std::size_t i = 0; i < works_.size(); ++i) std::visit([&](auto& layer) { pack_layer(layer, packed_[i]); }, works_[i]);
+}
 
 Tensor16 NetRun::tensor(int index) {
   const NetTensor& tensor = net_->tensors[index];
@@ -39,13 +64,18 @@ Tensor16 NetRun::tensor(int index) {
 
 std::size_t NetRun::memory_bytes() const { return plan_.count * sizeof(std::int16_t); }
 
-void NetRun::run(Pool&) {
-  for (const NetLayer& layer : net_->layers) {
+void NetRun::run(Pool& pool) {
+  for (std::size_t i = 0; i < works_.size(); ++i) {
+    const NetLayer& layer = net_->layers[i];
     Tensor16 x = tensor(layer.a);
     const Tensor16 y = tensor(layer.y);
+    const ConstTensor16 b = layer.b < 0 ? ConstTensor16() : ConstTensor16(tensor(layer.b));
     // Fully connected: all pixels are one.
     if (std::holds_alternative<Matmul16>(layer.work) && y.pixels() == 1) x = {x.data(), {1, 1}, static_cast<int>(x.count())};
-    std::visit(RunPlain{x, layer.b < 0 ? ConstTensor16() : ConstTensor16(tensor(layer.b)), y}, layer.work);
+    if (loops_ == Loops::kPlain)
+      std::visit(RunPlain{x, b, y}, works_[i]);
+    else
+      std::visit(RunVectors{pool, x, b, y}, works_[i]);
   }
 }
 

@@ -1,8 +1,8 @@
 // A network with the memory that it runs in.
 #pragma once
 
-#include <memory>
-#include <string_view>
+#include <cstdint>
+#include <vector>
 
 #include "core/pool.h"
 #include "nets/memory_plan.h"
@@ -17,8 +17,6 @@ class NetRun {
  public:
   enum class Loops { kPlain, kVectors };
   NetRun(const Net& net, Loops loops);
-  ~NetRun();
-  NetRun(NetRun&&) noexcept;
 
   const Net& net() const { return *net_; }
   /// To be filled anew for each run: its memory is used for other tensors, too.
@@ -29,12 +27,12 @@ class NetRun {
   std::size_t memory_bytes() const;
 
  private:
-  struct Prepared;
   const Net* net_;
   Loops loops_;
   MemoryPlan plan_;
-  Image<std::int16_t> memory_;  // one row
-  std::unique_ptr<Prepared> prepared_;
+  Image<std::int16_t> memory_;                     // one row
+  std::vector<LayerWork> works_;                   // the net's layers, packed for the loops
+  std::vector<std::vector<std::int32_t>> packed_;  // their memory, one a layer
 };
 
 }  // namespace duo
