@@ -50,6 +50,20 @@ void expect_pinned(NetRun& run, Pool& pool, const std::string& what) {
     }
 }
 
+/// One number for all outputs for eight pictures.
+std::uint64_t hash_of_eight(NetRun& run, Pool& pool) {
+  std::string hashes;
+  for (int number = 0; number < 8; ++number) {
+    test::fill_input(run.input(), run.net().tensors[0].range, number);
+    run.run(pool);
+    for (const NetOutput& output : run.net().outputs) {
+      const std::uint64_t hash = test::hash_of(run.tensor(output.tensor));
+      hashes.append(reinterpret_cast<const char*>(&hash), sizeof(hash));
+    }
+  }
+  return hash_words(hashes);
+}
+
 class Models : public testing::TestWithParam<const char*> {};
 
 TEST_P(Models, AreReadIn50Ms) {
@@ -72,6 +86,26 @@ TEST_P(Models, PlainLoopsGiveTheToolsBits) {
   NetRun run(*net, NetRun::Loops::kPlain);
   expect_pinned(run, pool, "plain");
   EXPECT_LT(run.memory_bytes(), 7u << 20);
+}
+
+TEST_P(Models, EveryInstructionSetAndNumberOfThreadsGivesThoseBits) {
+  const auto net = read_net(test::model_path(GetParam()));
+  ASSERT_TRUE(net) << net.error().what;
+  NetRun run(*net, NetRun::Loops::kVectors);
+  Pool one(1), two(2), five(5);
+  test::each_target([&](const std::string& target) {
+    for (Pool* pool : {&one, &two, &five}) expect_pinned(run, *pool, target + " threads " + std::to_string(pool->threads()));
+  });
+}
+
+TEST_P(Models, EightPicturesHaveOneHash) {
+  const auto net = read_net(test::model_path(GetParam()));
+  ASSERT_TRUE(net) << net.error().what;
+  Pool one(1), five(5);
+  NetRun plain(*net, NetRun::Loops::kPlain), vectors(*net, NetRun::Loops::kVectors);
+  const std::uint64_t want = hash_of_eight(plain, one);
+  EXPECT_EQ(hash_of_eight(vectors, one), want);
+  EXPECT_EQ(hash_of_eight(vectors, five), want);
 }
 
 INSTANTIATE_TEST_SUITE_P(, Models, testing::Values("person_detector", "body_lite", "body_full", "hand_lite", "hand_full"),

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Measures the ranges of the models' tensors in floating point and writes ranges.json: tools/models/measure FOLDER PACKAGES.
+"""Measures the ranges of the models' tensors in floating point and writes ranges.json: tools/models/measure.py FOLDER PACKAGES.
 
 FOLDER holds the rendered clips dev_easy_wave and dev_hard_beige, PACKAGES the packages' .tgz. Needs ffmpeg and python3-numpy.
 """
