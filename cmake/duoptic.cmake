@@ -14,13 +14,8 @@ target_compile_definitions(duoptic_flags INTERFACE HWY_BROKEN_EMU128=0 HWY_WANT_
 # Kernels are the same for every compiler and its options: another build folder's can be taken.
 set(DUO_SPIRV "${PROJECT_BINARY_DIR}/spirv" CACHE PATH "Folder of the compiled kernels; one that is not this build's must be complete")
 
-# SPIR-V as numbers to include, for the library's kernels or for another target and an older Vulkan.
+# SPIR-V as numbers to include.
 function(duoptic_shader source)
-  cmake_parse_arguments(ARG "" "TARGET;VULKAN" "" ${ARGN})
-  if(NOT ARG_TARGET)
-    set(ARG_TARGET duoptic)
-    set(ARG_VULKAN 1.3)
-  endif()
   get_filename_component(name ${source} NAME)
   set(out ${DUO_SPIRV}/${name}.inc)
   if(NOT DUO_SPIRV STREQUAL "${PROJECT_BINARY_DIR}/spirv")
@@ -28,9 +23,9 @@ function(duoptic_shader source)
   endif()
   add_custom_command(OUTPUT ${out}
     COMMAND ${CMAKE_COMMAND} -E make_directory ${DUO_SPIRV}
-    COMMAND ${DUO_GLSLC} -O --target-env=vulkan${ARG_VULKAN} -I ${PROJECT_SOURCE_DIR}/src -mfmt=num -MD -MF ${out}.d -o ${out} ${source}
+    COMMAND ${DUO_GLSLC} -O --target-env=vulkan1.3 -I ${PROJECT_SOURCE_DIR}/src -mfmt=num -MD -MF ${out}.d -o ${out} ${source}
     DEPENDS ${source} DEPFILE ${out}.d COMMENT "SPIR-V ${name}" VERBATIM)
-  target_sources(${ARG_TARGET} PRIVATE ${out})
+  target_sources(duoptic PRIVATE ${out})
 endfunction()
 
 if(DUO_TESTS)

@@ -39,14 +39,13 @@ ImVec2 inset(ImVec2 p, float d) { return {p.x + d, p.y + d}; }
 
 }  // namespace
 
-Panels::Panels(Textures& textures, const TrackHeader& header, float scale)
-    : textures_(textures), header_(header), scale_(scale) {}
+Panels::Panels(const TrackHeader& header, float scale) : header_(header), scale_(scale) {}
 
 Result<void> Panels::show(std::shared_ptr<const Shown> shown) {
   if (shown == shown_) return {};
   if (shows_ == 0) {
-    DUO_TRY(textures_.set(turbo_strip_, turbo_strip()));
-    DUO_TRY(textures_.set(hue_strip_, hue_strip()));
+    DUO_TRY(turbo_strip_.set(turbo_strip()));
+    DUO_TRY(hue_strip_.set(hue_strip()));
   }
   const Frame& frame = shown->frame;
   const auto& d_q4 = frame.disparity.d_q4;
@@ -62,14 +61,14 @@ Result<void> Panels::show(std::shared_ptr<const Shown> shown) {
                 range_.near_px + follow * (wide.near_px - range_.near_px)};
     }
   if (orbit_.middle_m <= 0 || shows_ == 1) orbit_.middle_m = std::max(0.3, foreground_m(d_q4, header_.rectified));
-  DUO_TRY(textures_.set(camera_, shown->left.pixels));
+  DUO_TRY(camera_.set(shown->left.pixels));
   if (painted_.size() != d_q4.size()) painted_ = Image<Rgb8>(d_q4.size());
   color_disparity(d_q4, range_, painted_);
-  DUO_TRY(textures_.set(depth_, painted_));
+  DUO_TRY(depth_.set(painted_));
   draw_regions(frame, header_.rectified, shown->people, painted_);
-  DUO_TRY(textures_.set(region_, painted_));
+  DUO_TRY(region_.set(painted_));
   draw_hue(frame.color, painted_);
-  DUO_TRY(textures_.set(hue_, painted_));
+  DUO_TRY(hue_.set(painted_));
   shown_ = std::move(shown);
   cloud_stale_ = true;
   return {};
@@ -116,7 +115,7 @@ Panels::Fit Panels::picture(const Cell& cell, const Texture& texture) {
   const float scale = std::max(0.01f, std::min(width / across, height / down));
   const ImVec2 from = {cell.from.x + (width - across * scale) / 2, cell.from.y + (height - down * scale) / 2};
   const Fit fit = {from, {from.x + across * scale, from.y + down * scale}, scale};
-  textures_.draw(*ImGui::GetWindowDrawList(), texture, fit.from, fit.to);
+  texture.draw(*ImGui::GetWindowDrawList(), fit.from, fit.to);
   return fit;
 }
 
@@ -232,7 +231,7 @@ void Panels::put_depth_legend(const Cell& cell) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 to = {cell.caption.x + cell.caption_width, cell.caption.y + 10 * scale_};
   if (range_.empty()) return list.AddText(cell.caption, kFaint, "no depth");
-  textures_.draw(list, turbo_strip_, cell.caption, to);
+  turbo_strip_.draw(list, cell.caption, to);
   const Rectified& r = header_.rectified;
   std::vector<std::pair<float, float>> taken;
   for (const double z_m :
@@ -280,7 +279,7 @@ Result<void> Panels::draw_cloud_panel(const Cell& cell) {
   if (cloud_stale_ || turned || points_.size() != size) {
     if (points_.size() != size) points_ = Image<Rgb8>(size);
     draw_points(shown_->frame.disparity.d_q4, shown_->frame.color, header_.rectified, camera, points_);
-    DUO_TRY(textures_.set(cloud_, points_));
+    DUO_TRY(cloud_.set(points_));
     drawn_orbit_ = orbit_;
     cloud_stale_ = false;
   }
@@ -325,7 +324,7 @@ void Panels::draw_hue_panel(const Cell& cell) {
   picture(cell, hue_);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float bottom = cell.caption.y + 10 * scale_;
-  textures_.draw(list, hue_strip_, cell.caption, {cell.caption.x + cell.caption_width, bottom});
+  hue_strip_.draw(list, cell.caption, {cell.caption.x + cell.caption_width, bottom});
   for (const int degrees : {0, 60, 120, 180, 240, 300}) {
     const float x = cell.caption.x + static_cast<float>(degrees) * cell.caption_width / 360;
     list.AddText({x, bottom + 3 * scale_}, kText, std::to_string(degrees).c_str());

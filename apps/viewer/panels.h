@@ -9,7 +9,7 @@
 #include "duoptic/paint.h"
 #include "player.h"
 #include "style.h"
-#include "window.h"
+#include "texture.h"
 
 namespace duo::app::view {
 
@@ -21,7 +21,7 @@ struct ClickAt {
 /// Draws what is shown; gives back where the camera's picture was clicked.
 class Panels {
  public:
-  Panels(Textures& textures, const TrackHeader& header, float scale);
+  Panels(const TrackHeader& header, float scale);
 
   /// The next draw() shows this.
   Result<void> show(std::shared_ptr<const Shown> shown);
@@ -58,7 +58,6 @@ class Panels {
   void draw_region(const Cell& cell);
   void draw_hue_panel(const Cell& cell);
 
-  Textures& textures_;
   const TrackHeader header_;
   float scale_;
   std::shared_ptr<const Shown> shown_;

@@ -49,7 +49,7 @@ class Viewer {
       : options_(options),
         window_(window),
         player_(player),
-        panels_(window.textures(), player.header(), window.scale()),
+        panels_(player.header(), window.scale()),
         sidebar_(std::move(sidebar)),
         clicks_(player.header().skeletons, player.asks_for_clicks()) {}
 
@@ -63,12 +63,11 @@ class Viewer {
     while (!window_.closing() && !Interrupt::asked() && !done_) {
       // ImGui 1.86 sees a second click only when a frame came between both.
       Window::wait(ImGui::IsAnyMouseDown() ? 0.01 : kIdle_s);
-      DUO_TRY_ASSIGN(const bool visible, window_.begin());
-      if (!visible) continue;
+      if (!window_.begin()) continue;
       take_newest();
       if (shown_) DUO_TRY(panels_.show(shown_));
       DUO_TRY(draw());
-      DUO_TRY(window_.end());
+      window_.end();
       DUO_TRY(keep_screenshot());
       DUO_TRY(check_end());
     }
