@@ -1,0 +1,20 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_shader_16bit_storage : require
+#include "stages/depth_to_space16/depth_to_space16_params.h"
+
+// Moves 4 bytes a value.
+layout(local_size_x = kValueLanes) in;
+layout(std430, binding = 0) readonly buffer X { int16_t x[]; };
+layout(std430, binding = 1) writeonly buffer Y { int16_t y[]; };
+layout(push_constant) uniform Push { DepthToSpace16Push p; };
+
+void main() {
+  const int i = int(gl_GlobalInvocationID.x), picture = int(gl_WorkGroupID.y);
+  if (i >= p.channels * p.y_width * p.y_height) return;
+  const int c = i % p.channels, ox = i / p.channels % p.y_width, oy = i / p.channels / p.y_width;
+  const int from = p.x.offset + picture * p.x.stride;
+  const int of_x = (oy % 2 * 2 + ox % 2) * p.channels + c;
+  const int value = int(x[from + (oy / 2 * (p.y_width / 2) + ox / 2) * 4 * p.channels + of_x]);
+  y[p.y.offset + picture * p.y.stride + i] = int16_t(value);
+}

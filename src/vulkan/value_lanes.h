@@ -1,0 +1,14 @@
+// Included by C++ and by GLSL.
+#ifndef DUO_VULKAN_VALUE_LANES_H
+#define DUO_VULKAN_VALUE_LANES_H
+#ifdef __cplusplus
+namespace duo::vk {
+#endif
+
+// Workgroup of kernels with one invocation a value, and one workgroup row a picture.
+const int kValueLanes = 128;
+
+#ifdef __cplusplus
+}  // namespace duo::vk
+#endif
+#endif
