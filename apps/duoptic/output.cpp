@@ -1,9 +1,17 @@
 #include "output.h"
 
+#include <dirent.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <system_error>
 #include <utility>
 
@@ -13,7 +21,41 @@ namespace fs = std::filesystem;
 namespace {
 
 Error cannot_write(const fs::path& path, const std::string& why) {
-  return {ErrorCode::kWriteFailed, fmt::format("cannot write to {}: {}", path.string(), why)};
+  const bool exhausted = errno == ENOMEM || errno == EMFILE || errno == ENFILE;
+  return {exhausted ? ErrorCode::kExhausted : ErrorCode::kWriteFailed,
+          fmt::format("cannot write to {}: {}", path.string(), why)};
+}
+
+Error cannot_write(const fs::path& path) { return cannot_write(path, std::strerror(errno)); }
+
+/// Makes the folders that are missing; `made` has those afterwards.
+Result<void> make_folders(const fs::path& folder, std::vector<fs::path>& made) {
+  fs::path part;
+  std::error_code error;
+  for (const fs::path& step : folder) {
+    part /= step;
+    if (step.empty() || fs::is_directory(part, error)) continue;
+    if (::mkdir(part.c_str(), 0777) == 0)
+      made.push_back(part);
+    else if (errno != EEXIST || !fs::is_directory(part, error))  // else another run has just made it
+      return cannot_write(part, errno == EEXIST ? "it is not a folder" : std::strerror(errno));
+  }
+  return {};
+}
+
+/// Waits while another run publishes, a moment; false when that takes too long. Not every file system has locks.
+bool lock(int folder) {
+  constexpr int kTries = 100;
+  constexpr timespec kStep{0, 20'000'000};
+  for (int i = 0; i < kTries; ++i) {
+    if (::flock(folder, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return true;
+    ::nanosleep(&kStep, nullptr);
+  }
+  return false;
+}
+
+int open_folder(int in, const char* name, int more = 0) {
+  return ::openat(in, name, O_RDONLY | O_DIRECTORY | O_CLOEXEC | more);
 }
 
 }  // namespace
@@ -21,46 +63,79 @@ Error cannot_write(const fs::path& path, const std::string& why) {
 Result<OutputSet> OutputSet::open(const fs::path& folder) {
   OutputSet out;
   out.folder_ = folder;
-  std::error_code error;
-  fs::path part;
-  for (const fs::path& step : folder) {
-    part /= step;
-    if (step.empty() || fs::is_directory(part, error)) continue;
-    if (!fs::create_directory(part, error)) return cannot_write(part, error ? error.message() : "it is not a folder");
-    out.made_.push_back(part);
-  }
-  std::string staging = (folder / ".duoptic-XXXXXX").string();
-  if (mkdtemp(staging.data()) == nullptr) return cannot_write(folder, std::strerror(errno));
-  out.staging_ = staging;
+  DUO_TRY(make_folders(folder, out.made_));
+  out.folder_fd_ = open_folder(AT_FDCWD, folder.empty() ? "." : folder.c_str());
+  if (out.folder_fd_ < 0) return cannot_write(folder);
+  std::string staging = fmt::format("/proc/self/fd/{}/.duoptic-XXXXXX", out.folder_fd_);
+  if (::mkdtemp(staging.data()) == nullptr) return cannot_write(folder);
+  out.staging_ = fs::path(staging).filename();
+  out.staging_fd_ = open_folder(out.folder_fd_, out.staging_.c_str(), O_NOFOLLOW);
+  if (out.staging_fd_ < 0) return cannot_write(folder);
   return out;
 }
 
 OutputSet::OutputSet(OutputSet&& other) noexcept
     : folder_(std::move(other.folder_)),
       staging_(std::exchange(other.staging_, {})),
+      folder_fd_(std::exchange(other.folder_fd_, -1)),
+      staging_fd_(std::exchange(other.staging_fd_, -1)),
       made_(std::exchange(other.made_, {})),
       names_(std::move(other.names_)) {}
 
 OutputSet::~OutputSet() {
-  std::error_code ignored;
-  if (!staging_.empty()) fs::remove_all(staging_, ignored);
-  for (auto made = made_.rbegin(); made != made_.rend(); ++made) fs::remove(*made, ignored);  // only when empty
+  if (DIR* staged = staging_fd_ < 0 ? nullptr : ::fdopendir(staging_fd_)) {
+    while (const dirent* entry = ::readdir(staged)) ::unlinkat(::dirfd(staged), entry->d_name, 0);
+    ::closedir(staged);
+  }
+  if (!staging_.empty()) ::unlinkat(folder_fd_, staging_.c_str(), AT_REMOVEDIR);
+  if (folder_fd_ >= 0) ::close(folder_fd_);
+  for (auto made = made_.rbegin(); made != made_.rend(); ++made) ::rmdir(made->c_str());  // only when empty
 }
 
 fs::path OutputSet::operator/(const std::string& name) {
   names_.push_back(name);
-  return staging_ / name;
+  return fmt::format("/proc/self/fd/{}/{}", staging_fd_, name);
+}
+
+/// Gives one file its name, and an earlier one's place to that; 0 or an errno.
+int OutputSet::put(const std::string& name, bool& replaced) const {
+  struct stat there {};
+  const char* n = name.c_str();
+  replaced = ::fstatat(folder_fd_, n, &there, AT_SYMLINK_NOFOLLOW) == 0;
+  if (!replaced) return ::renameat(staging_fd_, n, folder_fd_, n) == 0 ? 0 : errno;
+  if (!S_ISREG(there.st_mode) && !S_ISLNK(there.st_mode)) return EISDIR;
+  if (::renameat2(staging_fd_, n, folder_fd_, n, RENAME_EXCHANGE) == 0) return 0;
+  if (errno != EINVAL && errno != ENOSYS) return errno;
+  // A file system that cannot exchange two names.
+  const std::string fresh = name + ".new";
+  if (::renameat(staging_fd_, n, staging_fd_, fresh.c_str()) != 0 || ::renameat(folder_fd_, n, staging_fd_, n) != 0)
+    return errno;
+  if (::renameat(staging_fd_, fresh.c_str(), folder_fd_, n) == 0) return 0;
+  const int error = errno;
+  take_back(name, true);
+  return error;
+}
+
+void OutputSet::take_back(const std::string& name, bool replaced) const {
+  if (replaced)
+    ::renameat(staging_fd_, name.c_str(), folder_fd_, name.c_str());
+  else
+    ::unlinkat(folder_fd_, name.c_str(), 0);
 }
 
 Result<void> OutputSet::publish() {
-  std::error_code error;
+  if (!lock(folder_fd_)) return cannot_write(folder_, "another program has locked the folder; try again");
+  std::vector<bool> replaced(names_.size());
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    fs::rename(staging_ / names_[i], folder_ / names_[i], error);
-    if (!error) continue;
-    const Error failure = cannot_write(folder_ / names_[i], error.message());
-    for (std::size_t done = 0; done < i; ++done) fs::remove(folder_ / names_[done], error);
-    return failure;
+    bool earlier = false;
+    const int failed = put(names_[i], earlier);
+    replaced[i] = earlier;
+    if (failed == 0) continue;
+    for (std::size_t done = i; done-- > 0;) take_back(names_[done], replaced[done]);
+    errno = failed;
+    return cannot_write(folder_ / names_[i]);
   }
+  ::flock(folder_fd_, LOCK_UN);
   made_.clear();
   return {};
 }

@@ -10,7 +10,8 @@
 namespace duo::app {
 
 /// Files are written into a hidden folder inside `folder` and take their names in publish(); what was not published is removed
-/// at the end, with the folders that were made for it.
+/// at the end, with the folders that were made for it. Both folders are looked up once: what others put in their place later
+/// is not touched.
 class OutputSet {
  public:
   /// Errors  the folder cannot be made or written to
@@ -22,16 +23,22 @@ class OutputSet {
   /// Where to write the file that will be called `name`.
   std::filesystem::path operator/(const std::string& name);
 
-  /// Gives all files their names; files of earlier runs are replaced.
+  /// Gives all files their names; files of earlier runs are replaced, all or none. Of two that publish into one folder the
+  /// later one wins whole, where the file system has locks.
   ///
-  /// Errors  a name is taken by a folder, or the like; then none of the names is left behind
+  /// Errors  a name is taken by a folder, or the like; then all names hold what they held before
   Result<void> publish();
 
   std::vector<std::string> paths() const;
 
  private:
   OutputSet() = default;
-  std::filesystem::path folder_, staging_;
+  int put(const std::string& name, bool& replaced) const;
+  void take_back(const std::string& name, bool replaced) const;
+
+  std::filesystem::path folder_;
+  std::string staging_;  // its name in the folder; empty: none
+  int folder_fd_ = -1, staging_fd_ = -1;
   std::vector<std::filesystem::path> made_;  // folders that were not there before, outermost first
   std::vector<std::string> names_;
 };

@@ -17,9 +17,9 @@ namespace {
 
 constexpr char kFooter[] =
     "One Matroska file with two video tracks that ordinary players open: JPEG as the cameras delivered it, other pictures as\n"
-    "FFV1, nothing lost; capture times to the nanosecond and the rig are in it. Written under its name from the start: after "
-    "a\n"
-    "crash, a full disk or Ctrl-C all pairs up to then are there. Every command that takes LEFT takes a recording alone.\n\n"
+    "FFV1, nothing lost; capture times to the nanosecond and the rig are in it. Written under its name from the first pair\n"
+    "on: after a crash, a full disk or Ctrl-C all pairs up to then are there. Every command that takes LEFT takes a recording "
+    "alone.\n\n"
     "Examples:\n"
     "  duoptic record camera:0 camera:2 --rig rig.json -o clip.mkv              until Ctrl-C\n"
     "  duoptic record camera:0 camera:2 --rig rig.json -o clip.mkv --seconds 10\n"

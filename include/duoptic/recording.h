@@ -21,7 +21,7 @@ struct RecorderSetup {
   bool replace = false;   // an earlier file of that name
 };
 
-/// Writes pairs as they come, under the final name from the start: what was recorded cannot be recorded again, so that a
+/// Writes pairs as they come, under the final name from the first one on: what was recorded cannot be recorded again, so that a
 /// program that is killed must leave all up to the last pair, where its user looks for it. For the same reason a file that is
 /// there already stays unless `replace` is set.
 ///

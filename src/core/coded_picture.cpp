@@ -19,10 +19,10 @@ namespace {
 template <class CopyRow>
 std::string png(Size size, AVPixelFormat format, CopyRow&& copy_row) {
   const AVCodec* codec = avcodec_find_encoder(AV_CODEC_ID_PNG);
-  const av::Coder encoder(codec != nullptr && !size.empty() ? avcodec_alloc_context3(codec) : nullptr);
-  const av::CodedFrame frame(av_frame_alloc());
-  const av::Packet packet(av_packet_alloc());
-  if (!encoder || !frame || !packet) return {};
+  if (codec == nullptr || size.empty()) return {};
+  const av::Coder encoder(av::had_memory(avcodec_alloc_context3(codec)));
+  const av::CodedFrame frame(av::had_memory(av_frame_alloc()));
+  const av::Packet packet(av::had_memory(av_packet_alloc()));
   frame->width = encoder->width = size.width;
   frame->height = encoder->height = size.height;
   frame->format = encoder->pix_fmt = format;
@@ -31,9 +31,13 @@ std::string png(Size size, AVPixelFormat format, CopyRow&& copy_row) {
   encoder->flags |= AV_CODEC_FLAG_BITEXACT;
   encoder->compression_level = 1;  // of disparities a third larger than the best, in a third of the time
   av_opt_set(encoder->priv_data, "pred", "up", 0);
-  if (avcodec_open2(encoder.get(), codec, nullptr) < 0 || av_frame_get_buffer(frame.get(), 0) < 0) return {};
+  if (av::had_memory(avcodec_open2(encoder.get(), codec, nullptr)) < 0 ||
+      av::had_memory(av_frame_get_buffer(frame.get(), 0)) < 0)
+    return {};
   for (int y = 0; y < size.height; ++y) copy_row(y, frame->data[0] + std::ptrdiff_t{y} * frame->linesize[0]);
-  if (avcodec_send_frame(encoder.get(), frame.get()) < 0 || avcodec_receive_packet(encoder.get(), packet.get()) < 0) return {};
+  if (av::had_memory(avcodec_send_frame(encoder.get(), frame.get())) < 0 ||
+      av::had_memory(avcodec_receive_packet(encoder.get(), packet.get())) < 0)
+    return {};
   return {reinterpret_cast<const char*>(packet->data), static_cast<std::size_t>(packet->size)};
 }
 
@@ -61,8 +65,8 @@ std::string png_of(View<const std::uint16_t> picture) {
 }
 
 std::string jpeg_of(View<const Rgb8> picture, int quality) {
-  const std::unique_ptr<void, int (*)(tjhandle)> encoder(tjInitCompress(), tjDestroy);
-  if (!encoder || picture.empty()) return {};
+  if (picture.empty()) return {};
+  const std::unique_ptr<void, int (*)(tjhandle)> encoder(av::had_memory(tjInitCompress()), tjDestroy);
   unsigned char* bytes = nullptr;
   unsigned long size = 0;
   const int failed = tjCompress2(encoder.get(), reinterpret_cast<const unsigned char*>(picture.data()), picture.width(),

@@ -11,7 +11,7 @@ namespace duo {
 /// A picture as PNG, without loss: coloured, gray, or gray of 16 bits. The same bytes each time;
 /// the chunk after the header, pHYs, says that pixels are square.
 ///
-/// Errors  empty when the picture is, or when it has more than libav's PNG can hold
+/// Errors  empty when the picture is, or when it has more than libav's PNG can hold; std::bad_alloc
 std::string png_of(View<const Rgb8> picture);
 std::string png_of(View<const std::uint8_t> picture);
 std::string png_of(View<const std::uint16_t> picture);

@@ -7,8 +7,11 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
+#include <cerrno>
 #include <memory>
+#include <new>
 #include <string>
+#include <utility>
 
 namespace duo::av {
 
@@ -18,9 +21,10 @@ struct Free {
   void operator()(AVPacket* p) const { av_packet_free(&p); }
   void operator()(SwsContext* p) const { sws_freeContext(p); }
 };
+void close_file(AVIOContext* file);  // of core/libav_file.h; what libav still holds is not written any more
 struct CloseOutput {
   void operator()(AVFormatContext* p) const {
-    avio_closep(&p->pb);
+    close_file(std::exchange(p->pb, nullptr));
     avformat_free_context(p);
   }
 };
@@ -29,6 +33,17 @@ using Coder = std::unique_ptr<AVCodecContext, Free>;  // a decoder or an encoder
 using CodedFrame = std::unique_ptr<AVFrame, Free>;    // what comes out of one or goes into the other
 using Packet = std::unique_ptr<AVPacket, Free>;
 using Scaler = std::unique_ptr<SwsContext, Free>;
+
+/// What libav returned, where it did not lack memory: std::bad_alloc is thrown then, as our own code does.
+inline int had_memory(int result) {
+  if (result == AVERROR(ENOMEM)) throw std::bad_alloc();
+  return result;
+}
+template <class T>
+T* had_memory(T* made) {
+  if (made == nullptr) throw std::bad_alloc();
+  return made;
+}
 
 inline std::string reason(int error) {
   char text[AV_ERROR_MAX_STRING_SIZE] = {};

@@ -3,9 +3,12 @@
 
 #include <array>
 #include <deque>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "core/file.h"
+#include "core/libav_file.h"
 #include "duoptic/recording.h"
 #include "sources/recording.h"
 
@@ -16,6 +19,8 @@ namespace {
 class PacketAvi {
  public:
   Result<void> open(const std::filesystem::path& path, const AVStream& from) {
+    DUO_TRY_ASSIGN(PartialFile file, PartialFile::open(path));
+    file_.emplace(std::move(file));
     path_ = path;
     AVFormatContext* made = nullptr;
     if (const int e = avformat_alloc_output_context2(&made, nullptr, "avi", nullptr); e < 0) return failed(e);
@@ -27,7 +32,7 @@ class PacketAvi {
     rate_ = from.avg_frame_rate.num > 0 ? from.avg_frame_rate : AVRational{30, 1};
     to->time_base = av_inv_q(rate_);
     to->avg_frame_rate = to->r_frame_rate = rate_;
-    if (const int e = avio_open(&made->pb, ("file:" + path.string()).c_str(), AVIO_FLAG_WRITE); e < 0) return failed(e);
+    if (const int e = av::write_into(*made, file_->fd()); e < 0) return failed(e);
     if (const int e = avformat_write_header(made, nullptr); e < 0) return failed(e);
     return {};
   }
@@ -41,30 +46,34 @@ class PacketAvi {
   }
   Result<void> finish() {
     if (const int e = av_write_trailer(muxer_.get()); e < 0) return failed(e);
-    const int e = avio_closep(&muxer_->pb);
-    return e < 0 ? Result<void>(failed(e)) : Result<void>();
+    if (const int e = av::flush(*muxer_); e < 0) return failed(e);
+    return file_->publish();
   }
 
  private:
   Error failed(int error) const { return write_error(path_, AVUNERROR(error)); }
 
+  std::optional<PartialFile> file_;
   std::filesystem::path path_;
   av::Muxer muxer_;
   AVRational rate_ = {};
   std::int64_t count_ = 0;
 };
 
-std::string times_row(std::int64_t pair, const AVPacket& left, const AVPacket& right) {
-  const CaptureMark l = CaptureMark::of(left).value_or(CaptureMark{left.pts * 1'000'000, static_cast<std::uint64_t>(pair)}),
-                    r = CaptureMark::of(right).value_or(CaptureMark{right.pts * 1'000'000, static_cast<std::uint64_t>(pair)});
-  return fmt::format("{},{:.9f},{:.9f},{},{}\n", pair, static_cast<double>(l.t_ns) * 1e-9, static_cast<double>(r.t_ns) * 1e-9,
-                     l.sequence, r.sequence);
+/// `t_ns`: when left and right were taken.
+std::string times_row(std::int64_t pair, const AVPacket& left, const AVPacket& right, const std::array<TimeNs, 2>& t_ns) {
+  const auto number = [&](const AVPacket& packet) {
+    const auto mark = CaptureMark::of(packet);
+    return mark ? mark->sequence : static_cast<std::uint64_t>(pair);
+  };
+  return fmt::format("{},{:.9f},{:.9f},{},{}\n", pair, static_cast<double>(t_ns[0]) * 1e-9, static_cast<double>(t_ns[1]) * 1e-9,
+                     number(left), number(right));
 }
 
 }  // namespace
 
 Result<void> export_recording(const std::filesystem::path& path, const RecordingFiles& to) {
-  const TwoTracks tracks = open_two_tracks(path);
+  DUO_TRY_ASSIGN(const TwoTracks tracks, open_two_tracks(path));
   if (!tracks.container)
     return Error{ErrorCode::kBadInput,
                  fmt::format("cannot export {}: it is no Matroska file with two video tracks", path.string())};
@@ -75,12 +84,14 @@ Result<void> export_recording(const std::filesystem::path& path, const Recording
   std::array<std::deque<av::Packet>, 2> waiting;  // for the other picture of their pair
   std::int64_t pairs = 0;
   while (true) {
-    av::Packet packet(av_packet_alloc());
-    if (!packet || av_read_frame(tracks.container.get(), packet.get()) < 0) break;
+    av::Packet packet(av::had_memory(av_packet_alloc()));
+    if (av::had_memory(av_read_frame(tracks.container.get(), packet.get())) < 0) break;
     for (std::size_t i = 0; packet && i < 2; ++i)
       if (packet->stream_index == tracks.views[i]->index) waiting[i].push_back(std::move(packet));
     if (waiting[0].empty() || waiting[1].empty()) continue;
-    times += times_row(pairs++, *waiting[0].front(), *waiting[1].front());
+    const AVPacket &left = *waiting[0].front(), &right = *waiting[1].front();
+    times += times_row(pairs++, left, right,
+                       {av::capture_ns(left, tracks.views[0]->time_base), av::capture_ns(right, tracks.views[1]->time_base)});
     for (std::size_t i = 0; i < 2; ++i) {
       DUO_TRY(avis[i].write(*waiting[i].front()));
       waiting[i].pop_front();

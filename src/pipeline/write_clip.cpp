@@ -1,8 +1,13 @@
 // Synthetic clips as folders: videos, the true rig, the truth of every frame, and depth.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -26,7 +31,7 @@ Error cannot_write(const fs::path& path, const std::string& why) {
   return {ErrorCode::kWriteFailed, fmt::format("cannot write clip '{}': {}", path.string(), why)};
 }
 
-/// A folder beside the final one, which takes its name in publish() and is gone before that.
+/// A folder beside the final one, which takes its name in publish() and is gone before that. Both are looked up once.
 class Staging {
  public:
   static Result<Staging> open(const fs::path& folder) {
@@ -34,51 +39,77 @@ class Staging {
     if (fs::exists(folder, error) && !is_replaceable(folder))
       return cannot_write(folder, "the name is taken by something that is no earlier clip; choose another");
     const fs::path full = fs::absolute(folder, error).lexically_normal();
-    const fs::path parent = full.has_filename() ? full.parent_path() : full.parent_path().parent_path();
-    fs::create_directories(parent, error);
+    const fs::path last = full.has_filename() ? full : full.parent_path();
+    fs::create_directories(last.parent_path(), error);
     if (error) return cannot_write(folder, error.message() + "; write elsewhere or change the permissions");
-    std::string name = (parent / ".duoptic-clip-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
+    Staging out(last);
+    out.parent_ = Descriptor(::open(last.parent_path().c_str(), kFolder));
+    std::string name = path_in(out.parent_, ".duoptic-clip-XXXXXX").string();
+    if (!out.parent_.is_open() || mkdtemp(name.data()) == nullptr)
       return cannot_write(folder, std::string(std::strerror(errno)) + "; write elsewhere or change the permissions");
-    fs::permissions(name, fs::perms(0755), error);
-    return Staging(full.has_filename() ? full : full.parent_path(), name);
+    out.staged_ = fs::path(name).filename();
+    out.inside_ = Descriptor(::openat(out.parent_.get(), out.staged_.c_str(), kFolder | O_NOFOLLOW));
+    if (!out.inside_.is_open() || ::fchmod(out.inside_.get(), 0755) != 0) return cannot_write(folder, std::strerror(errno));
+    return out;
   }
-  Staging(Staging&& other) noexcept : folder_(std::move(other.folder_)), staged_(std::exchange(other.staged_, {})) {}
+  Staging(Staging&& other) noexcept
+      : folder_(std::move(other.folder_)),
+        staged_(std::exchange(other.staged_, {})),
+        parent_(std::move(other.parent_)),
+        inside_(std::move(other.inside_)) {}
   ~Staging() {
     std::error_code ignored;
-    if (!staged_.empty()) fs::remove_all(staged_, ignored);
+    if (!staged_.empty()) fs::remove_all(path_in(parent_, staged_), ignored);
   }
 
-  fs::path operator/(const std::string& name) const { return staged_ / name; }
+  fs::path operator/(const std::string& name) const { return path_in(inside_, name); }
   std::string name() const { return folder_.filename().string(); }
 
+  /// An earlier clip goes where this one was, and with this object.
   Result<void> publish() {
-    std::error_code error;
-    const fs::path earlier = staged_.string() + "-earlier";
-    const bool replaces = fs::exists(folder_, error);
-    if (replaces) fs::rename(folder_, earlier, error);
-    if (!error) fs::rename(staged_, folder_, error);
-    if (error) {
-      std::error_code ignored;
-      if (replaces && fs::exists(earlier, ignored)) fs::rename(earlier, folder_, ignored);
-      return cannot_write(folder_, error.message());
+    const std::string name = folder_.filename();
+    const int in = parent_.get();
+    if (!fs::exists(path_in(parent_, name))) {
+      if (::renameat(in, staged_.c_str(), in, name.c_str()) != 0) return cannot_write(folder_, std::strerror(errno));
+      staged_.clear();
+      return {};
     }
-    staged_.clear();
-    if (replaces) fs::remove_all(earlier, error);
-    return {};
+    if (!is_replaceable(path_in(parent_, name))) return cannot_write(folder_, "the name was taken meanwhile; choose another");
+    if (::renameat2(in, staged_.c_str(), in, name.c_str(), RENAME_EXCHANGE) == 0) return {};
+    // A file system that cannot exchange two names.
+    const std::string earlier = staged_ + "-earlier";
+    if (errno != EINVAL || ::renameat(in, name.c_str(), in, earlier.c_str()) != 0)
+      return cannot_write(folder_, std::strerror(errno));
+    if (::renameat(in, staged_.c_str(), in, name.c_str()) == 0) {
+      staged_ = earlier;
+      return {};
+    }
+    const std::string why = std::strerror(errno);
+    ::renameat(in, earlier.c_str(), in, name.c_str());
+    return cannot_write(folder_, why);
   }
 
  private:
-  Staging(fs::path folder, fs::path staged) : folder_(std::move(folder)), staged_(std::move(staged)) {}
+  static constexpr int kFolder = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
+  explicit Staging(fs::path folder) : folder_(std::move(folder)) {}
 
-  // An empty folder, or one with a clip in it.
+  /// An empty folder, or one with a clip and nothing else in it.
   static bool is_replaceable(const fs::path& folder) {
     std::error_code error;
     if (!fs::is_directory(folder, error)) return false;
-    return fs::is_empty(folder, error) || (fs::exists(folder / "truth.json", error) && fs::exists(folder / "left.avi", error));
+    constexpr std::array<std::string_view, 5> kParts = {"left.avi", "right.avi", "calibration_truth.yml", "truth.json",
+                                                        "depth"};
+    if (fs::is_empty(folder, error)) return true;
+    if (!fs::exists(folder / "truth.json", error) || !fs::exists(folder / "left.avi", error)) return false;
+    const auto entries = fs::directory_iterator(folder, error);
+    return !error && std::all_of(begin(entries), end(entries), [&](const fs::directory_entry& entry) {
+      return std::find(kParts.begin(), kParts.end(), entry.path().filename().native()) != kParts.end();
+    });
   }
 
-  fs::path folder_, staged_;
+  fs::path folder_;
+  std::string staged_;  // its name in the parent; empty: there is none any more
+  Descriptor parent_, inside_;
 };
 
 // --- The rig, in OpenCV's FileStorage format ----------------------------------------------------------------------------

@@ -104,6 +104,12 @@ TEST(WriteClip, AppearsWholeOrNotAtAll) {
   ASSERT_FALSE(taken.has_value());
   EXPECT_EQ(taken.error().code, ErrorCode::kWriteFailed);
   EXPECT_EQ(test::bytes_of(temp / "mine/notes.txt"), "precious");
+  // Nor is a clip with something of the user's beside it.
+  ASSERT_TRUE(write_clip(setup_of(1), temp / "noted", 1, kSilent).has_value());
+  test::put(temp / "noted/notes.txt", "precious");
+  EXPECT_FALSE(write_clip(setup_of(1), temp / "noted", 1, kSilent).has_value());
+  EXPECT_EQ(test::bytes_of(temp / "noted/notes.txt"), "precious");
+  fs::remove_all(temp / "noted");
   // A setup that cannot be leaves nothing behind.
   EXPECT_FALSE(write_clip({.script = "dance"}, temp / "dance", 1, kSilent).has_value());
   EXPECT_EQ(entries(), 1);

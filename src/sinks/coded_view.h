@@ -12,13 +12,13 @@ namespace duo {
 /// JPEG as it was delivered when the first picture has one, else FFV1 of its RGB, without loss; each packet stands alone.
 class CodedView {
  public:
-  /// Errors  libav lacks FFV1, or memory
+  /// Errors  libav lacks FFV1
   static Result<CodedView> open(const Picture& first);
 
   /// What a container must know of the packets.
   bool describe(AVCodecParameters& parameters) const;
   std::string codec() const { return encoder_ ? "FFV1" : "MJPEG"; }
-  /// The packet of a picture, without times; nullptr when it is of another size, is no longer JPEG, or memory is out.
+  /// The packet of a picture, without times; nullptr when it is of another size, or no longer JPEG.
   av::Packet code(const Picture& picture);
 
  private:

@@ -38,7 +38,8 @@ class PanelVideo final : public Sink {
 Result<std::unique_ptr<Sink>> make_panel_video(const std::filesystem::path& path, const TrackHeader& header,
                                                std::string& note) {
   DUO_TRY_ASSIGN(VideoWriter video, VideoWriter::open(path, panels_size(header), header.frame_s));
-  if (!video.is_h264()) note = fmt::format("libav has no H.264 encoder here (libx264); {} is MPEG-4 part 2", path.string());
+  if (!video.is_h264())
+    note = fmt::format("libav has no H.264 encoder here (libx264); {} is MPEG-4 part 2", shown(path).string());
   return std::unique_ptr<Sink>(std::make_unique<PanelVideo>(std::move(video), header));
 }
 

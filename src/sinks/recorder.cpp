@@ -1,21 +1,19 @@
 // Recorder: pairs into Matroska, through libav.
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
+#include <new>
 #include <utility>
 
 #include "core/capture_mark.h"
 #include "core/file.h"
+#include "core/libav_file.h"
 #include "duoptic/recording.h"
 #include "sinks/coded_view.h"
-#include "sinks/roomy_file.h"
+#include "sinks/file_room.h"
 
 namespace duo {
 namespace {
@@ -25,8 +23,14 @@ constexpr AVRational kNs = {1, 1'000'000'000}, kMs = {1, 1000};
 }  // namespace
 
 struct Recorder::State {
-  State(std::filesystem::path to, const RecorderSetup& with, int fd) : path(std::move(to)), setup(with), file(fd) {}
-  ~State() { static_cast<void>(end()); }
+  State(std::filesystem::path to, const RecorderSetup& with, PartialFile into)
+      : path(std::move(to)), setup(with), file(std::move(into)), room(file.fd()) {}
+  ~State() {
+    try {
+      static_cast<void>(end());
+    } catch (const std::bad_alloc&) {  // the index is missing then, and no pair
+    }
+  }
 
   Result<void> begin(const Pair& first);
   Result<void> add_view(const Picture& first, const char* title);
@@ -38,7 +42,8 @@ struct Recorder::State {
 
   std::filesystem::path path;
   RecorderSetup setup;
-  RoomyFile file;
+  PartialFile file;
+  FileRoom room;
   av::Muxer muxer;
   std::vector<CodedView> views;
   TimeNs start_ns = 0;
@@ -78,7 +83,7 @@ Result<void> Recorder::State::attach_rig() {
 /// The head: tracks, tags and rig come before the first picture, where no cut takes them.
 Result<void> Recorder::State::begin(const Pair& first) {
   constexpr std::int64_t kHead = 1 << 16;
-  if (const int error = file.reserve(kHead); error != 0) return write_error(path, error);
+  if (const int error = room.reserve(kHead); error != 0) return write_error(path, error);
   AVFormatContext* made = nullptr;
   if (const int e = avformat_alloc_output_context2(&made, nullptr, "matroska", nullptr); e < 0) return failed(e);
   muxer.reset(made);
@@ -89,7 +94,7 @@ Result<void> Recorder::State::begin(const Pair& first) {
   if (setup.rig) DUO_TRY(attach_rig());
   av_dict_set_int(&muxer->metadata, CaptureMark::kFrameTag, std::llround(setup.frame_s * 1e9), 0);
   if (!setup.date.empty()) av_dict_set(&muxer->metadata, "creation_time", setup.date.c_str(), 0);
-  if (const int e = avio_open(&muxer->pb, ("file:" + path.string()).c_str(), AVIO_FLAG_WRITE); e < 0) return failed(e);
+  if (const int e = av::write_into(*muxer, file.fd()); e < 0) return failed(e);
   if (const int e = avformat_write_header(muxer.get(), nullptr); e < 0) return failed(e);
   start_ns = std::min(first.left.t_ns, first.right.t_ns);
   return {};
@@ -120,31 +125,26 @@ Result<void> Recorder::State::append(const Pair& pair) {
     return Error{ErrorCode::kUnsupported,
                  fmt::format("cannot record pair {} into '{}': a picture is not like the first ones; start a new recording",
                              pairs, path.string())};
-  const std::int64_t room = avio_tell(muxer->pb) + left->size + right->size + kAround + 2 * kEntry * (pairs + 1) + kEnd;
-  if (const int error = file.reserve(room); error != 0) return write_error(path, error);
+  const std::int64_t end = avio_tell(muxer->pb) + left->size + right->size + kAround + 2 * kEntry * (pairs + 1) + kEnd;
+  if (const int error = room.reserve(end); error != 0) return write_error(path, error);
   DUO_TRY(mux(*left, pair.left, 0));
   DUO_TRY(mux(*right, pair.right, 1));
   // Ends the cluster: libav holds it back until then.
   if (const int e = av_write_frame(muxer.get(), nullptr); e < 0) return failed(e);
   if (muxer->pb->error < 0) return failed(muxer->pb->error);
+  if (pairs == 0) DUO_TRY(file.take_name(setup.replace ? PartialFile::Earlier::kReplace : PartialFile::Earlier::kKeep));
   ++pairs;
   bytes = avio_tell(muxer->pb);
   return {};
 }
 
 Result<void> Recorder::State::end() {
-  if (!std::exchange(open, false)) return {};
-  int error = 0;
-  if (pairs > 0) {
-    error = av_write_trailer(muxer.get());
-    bytes = avio_size(muxer->pb);
-    const int closed = avio_closep(&muxer->pb);
-    if (error >= 0) error = closed;
-  }
-  const int flushed = file.finish();
-  if (pairs == 0) ::unlink(path.c_str());
-  if (error < 0) return failed(error);
-  if (flushed != 0) return write_error(path, flushed);
+  if (!std::exchange(open, false) || pairs == 0) return {};
+  const int completed = av_write_trailer(muxer.get()), flushed = av::flush(*muxer), trimmed = room.give_back();
+  bytes = avio_size(muxer->pb);
+  DUO_TRY(file.publish());
+  if (completed < 0 || flushed < 0) return failed(std::min(completed, flushed));
+  if (trimmed != 0) return write_error(path, trimmed);
   return {};
 }
 
@@ -155,18 +155,14 @@ Recorder::~Recorder() = default;
 
 Result<Recorder> Recorder::open(const std::filesystem::path& path, const RecorderSetup& setup) {
   av_log_set_level(AV_LOG_QUIET);  // what is wrong is said in our results
+  DUO_TRY_ASSIGN(PartialFile file, PartialFile::open(path));
   struct stat there {};
-  if (::stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode))
-    return Error{ErrorCode::kWriteFailed,
-                 fmt::format("cannot write '{}': it is a folder or device; give the name of a file", path.string())};
-  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | (setup.replace ? O_TRUNC : O_EXCL), 0666);
-  if (fd < 0 && errno == EEXIST)
+  if (!setup.replace && ::lstat(path.c_str(), &there) == 0)
     return Error{ErrorCode::kWriteFailed,
                  fmt::format("cannot record into '{}': a file of that name is there, and what it holds "
                              "may not be had again; choose another name or replace it by --force",
                              path.string())};
-  if (fd < 0) return write_error(path, errno);
-  return Recorder(std::make_unique<State>(path, setup, fd));
+  return Recorder(std::make_unique<State>(path, setup, std::move(file)));
 }
 
 Result<void> Recorder::write(const Pair& pair) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/libav_file.h"
+
 extern "C" {
 #include <libavutil/opt.h>
 }
@@ -39,14 +41,14 @@ av::Coder open_encoder(AVCodecID id, Size size, AVRational rate) {
 }  // namespace
 
 Error VideoWriter::failed(int error) const {
-  return {ErrorCode::kWriteFailed,
+  return {is_exhausted(AVUNERROR(error)) ? ErrorCode::kExhausted : ErrorCode::kWriteFailed,
           fmt::format("cannot write video '{}': {}; free some space or write elsewhere", name_, av::reason(error))};
 }
 
 Result<VideoWriter> VideoWriter::open(const std::filesystem::path& path, Size size, double frame_s) {
   av_log_set_level(AV_LOG_QUIET);  // what is wrong is said in our results
   DUO_TRY_ASSIGN(PartialFile file, PartialFile::open(path));
-  VideoWriter video(std::move(file), path.string());
+  VideoWriter video(std::move(file), shown(path).string());
   DUO_TRY(video.prepare(size, frame_s));
   return video;
 }
@@ -87,9 +89,7 @@ Result<void> VideoWriter::prepare(Size size, double frame_s) {
   stream->time_base = encoder_->time_base;
   stream->avg_frame_rate = rate;
   if (const int e = avcodec_parameters_from_context(stream->codecpar, encoder_.get()); e < 0) return failed(e);
-  const std::string url = "file:" + file_.partial().string();
-  if (const int e = avio_open(&muxer->pb, url.c_str(), AVIO_FLAG_WRITE); e < 0) return failed(e);
-  muxer->url = av_strdup(url.c_str());  // the index is moved to the front by reading the file again
+  if (const int e = av::write_into(*muxer, file_.fd()); e < 0) return failed(e);
   if (const int e = avformat_write_header(muxer, nullptr); e < 0) return failed(e);
   return {};
 }
@@ -119,7 +119,7 @@ Result<void> VideoWriter::write(View<const Rgb8> picture) {
 Result<void> VideoWriter::finish() {
   DUO_TRY(encode(nullptr));
   if (const int e = av_write_trailer(muxer_.get()); e < 0) return failed(e);
-  if (const int e = avio_closep(&muxer_->pb); e < 0) return failed(e);
+  if (const int e = av::flush(*muxer_); e < 0) return failed(e);
   return file_.publish();
 }
 

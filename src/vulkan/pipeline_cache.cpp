@@ -1,5 +1,8 @@
 #include "vulkan/pipeline_cache.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -29,6 +32,12 @@ std::string head_of(std::string_view data) {
   return head;
 }
 
+/// A driver trusts what it wrote itself: nobody else may have been able to write it.
+bool is_ours(const std::filesystem::path& path) {
+  struct stat there {};
+  return ::lstat(path.c_str(), &there) == 0 && there.st_uid == ::geteuid() && (there.st_mode & S_IWOTH) == 0;
+}
+
 }  // namespace
 
 std::filesystem::path pipeline_file(const std::string& device_id) {
@@ -45,6 +54,7 @@ std::filesystem::path pipeline_file(const std::string& device_id) {
 
 std::string read_pipelines(const std::filesystem::path& file) {
   if (file.empty()) return {};
+  if (!is_ours(file.parent_path()) || !is_ours(file)) return {};
   const auto bytes = read_file(file, kMostBytes, "pipeline cache");
   if (!bytes || bytes->size() < kHeadBytes) return {};
   const std::string_view data = std::string_view(*bytes).substr(kHeadBytes);
@@ -54,7 +64,8 @@ std::string read_pipelines(const std::filesystem::path& file) {
 void write_pipelines(const std::filesystem::path& file, const std::string& data) {
   if (file.empty() || data.empty() || data.size() > kMostBytes - kHeadBytes) return;
   std::error_code ignored;
-  std::filesystem::create_directories(file.parent_path(), ignored);
+  std::filesystem::create_directories(file.parent_path().parent_path(), ignored);
+  ::mkdir(file.parent_path().c_str(), 0700);
   (void)write_file(file, head_of(data) + data);
 }
 

@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -144,6 +146,35 @@ TEST(PipelineCache, BringsBackOnlyWhatItWrote) {
   std::filesystem::resize_file(file, 11);
   EXPECT_EQ(vk::read_pipelines(file), "") << "cut";
   vk::write_pipelines("/proc/nowhere/pipelines", data);  // not an error
+}
+
+TEST(PipelineCache, WhatIsNoFileOfOursIsLeftAside) {
+  namespace fs = std::filesystem;
+  const fs::path folder = ::testing::TempDir() + "duoptic_cache_not_ours", file = folder / "pipelines-1";
+  fs::remove_all(folder);
+  const std::string data = "kernels";
+  vk::write_pipelines(file, data);
+  ASSERT_EQ(vk::read_pipelines(file), data);
+  const auto writable = fs::perms::others_write;
+  for (const fs::path& path : {file, folder}) {
+    fs::permissions(path, writable, fs::perm_options::add);
+    EXPECT_EQ(vk::read_pipelines(file), "") << "anybody could have written " << path;
+    fs::permissions(path, writable, fs::perm_options::remove);
+  }
+  fs::rename(file, folder / "elsewhere");
+  fs::create_symlink(folder / "elsewhere", file);
+  EXPECT_EQ(vk::read_pipelines(file), "") << "a link";
+  fs::remove(file);
+  ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+  EXPECT_EQ(vk::read_pipelines(file), "") << "a pipe, which nobody writes into";
+  vk::write_pipelines(file, data);
+  EXPECT_TRUE(fs::is_fifo(file));
+  fs::remove(file);
+  fs::create_directory(file);
+  EXPECT_EQ(vk::read_pipelines(file), "") << "a folder";
+  vk::write_pipelines(file, data);
+  EXPECT_TRUE(fs::is_directory(file));
+  fs::remove_all(folder);
 }
 
 TEST(Recorder, FillsAndOrdersFills) {

@@ -3,17 +3,19 @@
 #include <fmt/format.h>
 
 #include "core/coded_picture.h"
+#include "core/libav_file.h"
 
 namespace duo {
 
 Error AviWriter::failed(int error) const {
-  return {ErrorCode::kWriteFailed,
+  return {is_exhausted(AVUNERROR(error)) ? ErrorCode::kExhausted : ErrorCode::kWriteFailed,
           fmt::format("cannot write video '{}': {}; free some space or write elsewhere", name_, av::reason(error))};
 }
 
 Result<AviWriter> AviWriter::open(const std::filesystem::path& path, Size size, int frames_per_second, int jpeg_quality) {
   av_log_set_level(AV_LOG_QUIET);  // what is wrong is said in our results
-  AviWriter video(path.string(), frames_per_second, jpeg_quality);
+  DUO_TRY_ASSIGN(PartialFile file, PartialFile::open(path));
+  AviWriter video(std::move(file), shown(path).string(), frames_per_second, jpeg_quality);
   video.packet_.reset(av_packet_alloc());
   AVFormatContext* muxer = nullptr;
   if (const int e = avformat_alloc_output_context2(&muxer, nullptr, "avi", nullptr); e < 0) return video.failed(e);
@@ -28,7 +30,7 @@ Result<AviWriter> AviWriter::open(const std::filesystem::path& path, Size size, 
   stream->codecpar->width = size.width;
   stream->codecpar->height = size.height;
   stream->codecpar->format = AV_PIX_FMT_YUVJ420P;
-  if (const int e = avio_open(&muxer->pb, ("file:" + video.name_).c_str(), AVIO_FLAG_WRITE); e < 0) return video.failed(e);
+  if (const int e = av::write_into(*muxer, video.file_.fd()); e < 0) return video.failed(e);
   if (const int e = avformat_write_header(muxer, nullptr); e < 0) return video.failed(e);
   return video;
 }
@@ -49,10 +51,8 @@ Result<void> AviWriter::write(View<const Rgb8> picture) {
 
 Result<void> AviWriter::finish() {
   if (const int e = av_write_trailer(muxer_.get()); e < 0) return failed(e);
-  avio_flush(muxer_->pb);
-  if (muxer_->pb->error < 0) return failed(muxer_->pb->error);
-  if (const int e = avio_closep(&muxer_->pb); e < 0) return failed(e);
-  return {};
+  if (const int e = av::flush(*muxer_); e < 0) return failed(e);
+  return file_.publish();
 }
 
 }  // namespace duo

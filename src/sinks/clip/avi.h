@@ -4,14 +4,14 @@
 #include <filesystem>
 #include <string>
 
+#include "core/file.h"
 #include "core/libav.h"
 #include "duoptic/image.h"
 #include "duoptic/result.h"
 
 namespace duo {
 
-/// Written under its final name from the start: meant for a folder that is not published yet. The same pictures give the same
-/// bytes.
+/// It takes its name in finish(). The same pictures give the same bytes.
 class AviWriter {
  public:
   /// Errors  the file cannot be made
@@ -20,10 +20,11 @@ class AviWriter {
   Result<void> finish();
 
  private:
-  explicit AviWriter(std::string name, int frames_per_second, int jpeg_quality)
-      : name_(std::move(name)), rate_{frames_per_second, 1}, quality_(jpeg_quality) {}
+  AviWriter(PartialFile file, std::string name, int frames_per_second, int jpeg_quality)
+      : file_(std::move(file)), name_(std::move(name)), rate_{frames_per_second, 1}, quality_(jpeg_quality) {}
   Error failed(int error) const;
 
+  PartialFile file_;
   std::string name_;
   AVRational rate_;
   int quality_;

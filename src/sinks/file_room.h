@@ -8,20 +8,13 @@
 
 #include <cerrno>
 #include <cstdint>
-#include <utility>
 
 namespace duo {
 
-/// A file with room made ahead of what is written: a full disk is met before a pair, while the index still fits.
-class RoomyFile {
+/// Room made in an open file ahead of what is written: a full disk is met before a pair, while the index still fits.
+class FileRoom {
  public:
-  explicit RoomyFile(int fd) : fd_(fd) {}
-  RoomyFile(const RoomyFile&) = delete;
-  RoomyFile& operator=(const RoomyFile&) = delete;
-  ~RoomyFile() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  int fd() const { return fd_; }
+  explicit FileRoom(int fd) : fd_(fd) {}
 
   /// Makes sure that the first `end` bytes can be written; 0, or the errno that says why not.
   int reserve(std::int64_t end) {
@@ -35,13 +28,10 @@ class RoomyFile {
     return reserved_ = end, 0;
   }
 
-  /// Gives back the room that was not used, and flushes to the disk; 0 or an errno.
-  int finish() {
+  /// Gives back what was not used; 0 or an errno.
+  int give_back() const {
     struct stat now {};
-    const bool done = ::fstat(fd_, &now) == 0 && ::ftruncate(fd_, now.st_size) == 0 && ::fsync(fd_) == 0;
-    const int error = done ? 0 : errno;
-    // A failed close() may be the first to tell of a full disk over a network.
-    return ::close(std::exchange(fd_, -1)) == 0 || error != 0 ? error : errno;
+    return ::fstat(fd_, &now) == 0 && ::ftruncate(fd_, now.st_size) == 0 ? 0 : errno;
   }
 
  private:
