@@ -47,10 +47,16 @@ struct CameraWish {
   double rate_hz = 30;
 };
 
+/// Pictures of files and streams with more pixels than this are refused, before they are decoded where the file says its size;
+/// kMostPixels unless told. For the whole process, at any time.
+void limit_pictures(std::int64_t most_pixels);
+inline constexpr std::int64_t kMostPixels = std::int64_t{1} << 26;  // 8192 x 8192
+
 /// Opens a picture (PNG, JPEG, … one picture), a video file, a camera (camera:0, /dev/video0, camera:BUS_PATH) or a stream
 /// (http://, https://, rtsp://, gst:PIPELINE).
 ///
-/// Errors  missing, empty, not a picture or video, unreadable at its start; a camera that cannot be opened, that does not give
+/// Errors  missing, empty, not a picture or video, unreadable at its start, too many pixels; a camera that cannot be opened,
+/// that does not give
 ///         the wished size, or that finds no room on its bus
 Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path, const CameraWish& wish = {});
 

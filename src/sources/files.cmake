@@ -1,12 +1,14 @@
 # Explicit names, no glob: what is not listed is not built.
 # Pictures and videos through libav itself: it tells whole pictures from partly decoded ones, and prints nothing by itself.
 pkg_check_modules(LIBAV REQUIRED IMPORTED_TARGET libavformat libavcodec libswscale libavutil)
-target_link_libraries(duoptic PRIVATE PkgConfig::LIBAV)
+pkg_check_modules(CURL REQUIRED IMPORTED_TARGET libcurl)
+target_link_libraries(duoptic PRIVATE PkgConfig::LIBAV PkgConfig::CURL)
 target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/block_flow.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/in_step.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/files.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/gst_process.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/http_bytes.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/in_real_time.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/libav.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/pairs.cpp

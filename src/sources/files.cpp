@@ -1,12 +1,14 @@
 // open_source(): which kind of file it is, and every way in which it cannot be read at all.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
+#include <limits>
 #include <string>
 #include <system_error>
 
+#include "core/file.h"
 #include "duoptic/source.h"
 #include "sources/camera/camera.h"
 #include "sources/camera/modes.h"
@@ -29,12 +31,12 @@ Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path, c
                              error && error != std::errc::no_such_file_or_directory ? error.message() : "no such file")};
   if (!std::filesystem::is_regular_file(status))
     return Error{ErrorCode::kBadInput, fmt::format("cannot read {}: it is not a file; give a picture or a video", name)};
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{ErrorCode::kBadInput, fmt::format("cannot read {}: {}", name, std::strerror(errno))};
+  // Of any size: of a video only parts are ever in memory.
+  DUO_TRY_ASSIGN(const Descriptor file, open_file(path, std::numeric_limits<std::size_t>::max(), "input"));
   std::string head(kPictureMagicBytes, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
+  const ssize_t read = ::pread(file.get(), head.data(), head.size(), 0);
+  if (read < 0) return Error{ErrorCode::kBadInput, fmt::format("cannot read {}: {}", name, std::strerror(errno))};
+  head.resize(static_cast<std::size_t>(read));
   if (head.empty()) return Error{ErrorCode::kBadInput, fmt::format("cannot read {}: the file is empty", name)};
   av_log_set_level(AV_LOG_QUIET);  // what is wrong is said in our results
   return is_picture(head) ? open_picture(path) : open_video(path);

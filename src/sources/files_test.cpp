@@ -1,7 +1,9 @@
 // Files written here with libav's encoders are read back whole, then cut at many bytes: a cut picture is an error, a cut
 // video gives exactly its first whole pictures and says that it was cut, or is an error when none is left.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -217,6 +219,73 @@ TEST(Pairs, CutAndShorterFilesAreNamed) {
   EXPECT_GT(given, 0);
   EXPECT_LT(given, kFrames);
   EXPECT_NE((*pairs)->warning().find("cut.avi"), std::string::npos) << (*pairs)->warning();
+}
+
+/// The most memory that this process ever had, in MB; of a fork it is that one's own.
+long most_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss / 1024;
+}
+
+/// A PNG of black pixels, one bit each: few bytes, many pixels.
+void write_black(const fs::path& path, Size size) {
+  Encoder encoder = make_encoder(AV_CODEC_ID_PNG, AV_PIX_FMT_MONOBLACK);
+  encoder.context.reset(avcodec_alloc_context3(avcodec_find_encoder(AV_CODEC_ID_PNG)));
+  encoder.context->width = size.width;
+  encoder.context->height = size.height;
+  encoder.context->pix_fmt = AV_PIX_FMT_MONOBLACK;
+  encoder.context->time_base = {1, 1};
+  ASSERT_GE(avcodec_open2(encoder.context.get(), nullptr, nullptr), 0);
+  const av::DecodedFrame frame(av_frame_alloc());
+  frame->format = AV_PIX_FMT_MONOBLACK;
+  frame->width = size.width;
+  frame->height = size.height;
+  ASSERT_GE(av_frame_get_buffer(frame.get(), 0), 0);
+  std::memset(frame->data[0], 0, static_cast<std::size_t>(frame->linesize[0]) * static_cast<std::size_t>(size.height));
+  encoder.encode(frame.get(), [&](AVPacket& p) {
+    put(path, {reinterpret_cast<char*>(p.data), static_cast<std::size_t>(p.size)});
+  });
+}
+
+TEST(Limits, TooManyPixelsAreRefusedBeforeTheyAreDecoded) {
+  const TempFolder folder;
+  write_black(folder / "large.png", {16000, 16000});
+  write_black(folder / "larger.png", {8200, 8200});  // little more than may be
+  ASSERT_LT(fs::file_size(folder / "large.png"), 500'000u);
+  const long before_mb = most_memory_mb();
+  for (int i = 0; i < 2; ++i) {
+    const std::string error = i == 0 ? read_all(folder / "large.png").error : read_png16(folder / "large.png").error().what;
+    EXPECT_NE(error.find("more than the 67.1 million pixels"), std::string::npos) << error;
+    EXPECT_NE(error.find("--max-megapixels"), std::string::npos) << error;
+  }
+  EXPECT_LT(most_memory_mb(), before_mb + 100);  // decoded it has 256 MB and more
+  EXPECT_NE(read_all(folder / "larger.png").error.find("8200x8200 pixels, more than"), std::string::npos);
+}
+
+TEST(Limits, TheMostPixelsAreTheCallersChoice) {
+  const TempFolder folder;
+  for (const PictureCase& picture : kPictures) write_picture(folder / picture.name, picture.codec, picture.format);
+  write_video(folder / "v.mp4", AV_CODEC_ID_MPEG4, AV_PIX_FMT_YUV420P, 0);
+  write_video(folder / "v.avi", AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P, 0);
+  constexpr std::int64_t kPixels = std::int64_t{kSize.width} * kSize.height;
+  for (const auto& entry : fs::directory_iterator(folder / "")) {
+    limit_pictures(kPixels);
+    EXPECT_TRUE(read_all(entry.path()).opened) << entry.path();
+    limit_pictures(kPixels / 2);
+    EXPECT_FALSE(read_all(entry.path()).opened) << entry.path();
+  }
+  limit_pictures(kMostPixels);
+}
+
+TEST(Limits, AFilesSizeIsLookedAtBeforeItIsRead) {
+  const TempFolder folder;
+  put(folder / "large.bmp", "BM");
+  fs::resize_file(folder / "large.bmp", std::uintmax_t{40} << 30);  // holes: takes no room
+  const long before_mb = most_memory_mb();
+  const Read read = read_all(folder / "large.bmp");
+  EXPECT_NE(read.error.find("more than 1073741824 bytes"), std::string::npos) << read.error;
+  EXPECT_LT(most_memory_mb(), before_mb + 100);
 }
 
 }  // namespace

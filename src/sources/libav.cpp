@@ -4,6 +4,15 @@ extern "C" {
 #include <libavutil/pixdesc.h>
 }
 
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cerrno>
+#include <vector>
+
+#include "core/file.h"
+#include "duoptic/source.h"
+
 namespace duo::av {
 namespace {
 
@@ -42,11 +51,49 @@ AVPixelFormat without_j(AVPixelFormat format, bool& full_range) {
   }
 }
 
+std::atomic<std::int64_t> pixel_limit = kMostPixels;
+
 }  // namespace
+
+std::int64_t most_pixels() { return pixel_limit; }
+
+std::int64_t most_pixels_of_libav() { return 2 * most_pixels() + (1 << 16); }
+
+std::string too_many_pixels() {
+  return fmt::format("more than the {:.3g} million pixels that are read; --max-megapixels reads more",
+                     static_cast<double>(most_pixels()) * 1e-6);
+}
+
+std::string too_many_pixels(Size size) {
+  if (std::int64_t{size.width} * size.height <= most_pixels()) return {};
+  return fmt::format("its pictures have {}x{} pixels, {}", size.width, size.height, too_many_pixels());
+}
+
+bool allow_only(AVFormatContext& container, const char* formats, const char* protocols) {
+  container.format_whitelist = av_strdup(formats);
+  container.protocol_whitelist = av_strdup(protocols);
+  return container.format_whitelist != nullptr && container.protocol_whitelist != nullptr;
+}
+
+int find_streams(AVFormatContext& container) {
+  const unsigned known = container.nb_streams;  // those that turn up later have small pictures, or are not opened
+  std::vector<AVDictionary*> options(known);
+  for (AVDictionary*& one : options) av_dict_set_int(&one, "max_pixels", most_pixels_of_libav(), 0);
+  const int found = avformat_find_stream_info(&container, options.data());
+  for (AVDictionary*& one : options) av_dict_free(&one);
+  return found;
+}
+
+Error input_error(const std::string& name, int error, const std::string& why) {
+  if (is_exhausted(AVUNERROR(error)))
+    return {ErrorCode::kExhausted, fmt::format("cannot read {}: {}; close other programs", name,
+                                               error == AVERROR(ENOMEM) ? "out of memory" : reason(error))};
+  return {ErrorCode::kBadInput, fmt::format("cannot read {}: {}", name, why)};
+}
 
 bool ToRgb::convert(const AVFrame& frame, Image<Rgb8>& into) {
   const Size size{frame.width, frame.height};
-  if (size.empty() || size.width > kMaxSide || size.height > kMaxSide) return false;
+  if (size.empty() || size.width > kMaxSide || size.height > kMaxSide || !too_many_pixels(size).empty()) return false;
   if (into.size() != size) into = Image<Rgb8>(size);
   if (frame.format == AV_PIX_FMT_GRAY8) return gray_to_rgb<std::uint8_t, 0>(frame, into), true;
   if (frame.format == AV_PIX_FMT_GRAY16LE) return gray_to_rgb<std::uint16_t, 8>(frame, into), true;
@@ -57,9 +104,10 @@ bool ToRgb::convert(const AVFrame& frame, Image<Rgb8>& into) {
     bool full_range = frame.color_range == AVCOL_RANGE_JPEG;
     const AVPixelFormat format = without_j(static_cast<AVPixelFormat>(frame.format), full_range);
     constexpr int kFlags = SWS_BILINEAR | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP | SWS_BITEXACT;
+    if (sws_isSupportedInput(format) == 0) return false;
     scaler_.reset(sws_getContext(size.width, size.height, format, size.width, size.height, AV_PIX_FMT_RGB24, kFlags, nullptr,
                                  nullptr, nullptr));
-    if (!scaler_) return false;
+    had_memory(scaler_.get());
     constexpr int kOne = 1 << 16;
     sws_setColorspaceDetails(scaler_.get(), sws_getCoefficients(frame.colorspace), full_range ? 1 : 0,
                              sws_getCoefficients(SWS_CS_DEFAULT), 1, 0, kOne, kOne);
@@ -74,3 +122,9 @@ bool ToRgb::convert(const AVFrame& frame, Image<Rgb8>& into) {
 }
 
 }  // namespace duo::av
+
+namespace duo {
+
+void limit_pictures(std::int64_t most_pixels) { av::pixel_limit = most_pixels; }
+
+}  // namespace duo

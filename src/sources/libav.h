@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 
 #include "core/capture_mark.h"
 #include "core/libav.h"
@@ -18,6 +19,23 @@ using Container = std::unique_ptr<AVFormatContext, CloseInput>;
 using Decoder = Coder;
 using DecodedFrame = CodedFrame;
 
+/// What duo::limit_pictures() was told last.
+std::int64_t most_pixels();
+/// libav counts what it decodes into, with its edges: nothing that we read is refused by this limit.
+std::int64_t most_pixels_of_libav();
+/// "" or why pictures of this size are not read.
+std::string too_many_pixels(Size size);
+std::string too_many_pixels();
+
+/// What a container may be, and by which protocols it may open anything: comma-separated. False without memory.
+bool allow_only(AVFormatContext& container, const char* formats, const char* protocols);
+
+/// avformat_find_stream_info(), which may decode: but no picture with too many pixels.
+int find_streams(AVFormatContext& container);
+
+/// "cannot read NAME: why", with a code that tells what is wrong with the input from what is wrong with the machine.
+Error input_error(const std::string& name, int error, const std::string& why);
+
 /// Opens a decoder that runs on the caller's thread alone; `configure` sees it before it is opened.
 ///
 /// Errors  nullptr when this build of libav does not know the codec or refuses the parameters
@@ -27,6 +45,7 @@ Decoder open_decoder(AVCodecID id, Configure&& configure) {
   Decoder decoder(codec ? avcodec_alloc_context3(codec) : nullptr);
   if (!decoder) return nullptr;
   decoder->thread_count = 1;
+  decoder->max_pixels = most_pixels_of_libav();
   decoder->flags |= AV_CODEC_FLAG_BITEXACT;
   if (!configure(*decoder) || avcodec_open2(decoder.get(), codec, nullptr) < 0) return nullptr;
   return decoder;
@@ -44,12 +63,20 @@ inline TimeNs to_ns(std::int64_t t, AVRational base) {
   return std::clamp(av_rescale_q(t, base, AVRational{1, 1'000'000'000}), -CaptureMark::kMost_ns, CaptureMark::kMost_ns);
 }
 
+/// When a packet's picture was taken: by its mark, else by its time in the file, whose unit is `base`.
+inline TimeNs capture_ns(const AVPacket& packet, AVRational base) {
+  const auto mark = CaptureMark::of(packet);
+  return mark ? mark->t_ns : to_ns(packet.pts, base);
+}
+
 /// Turns decoded frames of any pixel format into Rgb8: 16-bit and gray converted, alpha dropped; the same bits on every
 /// machine.
 class ToRgb {
  public:
-  /// False when the pixel format cannot be converted or the picture is larger than kMaxSide.
+  /// False when the pixel format cannot be converted or the picture is larger than kMaxSide. libswscale reads in steps of its
+  /// own: kReadBeyond bytes after the last row's must be there.
   bool convert(const AVFrame& frame, Image<Rgb8>& into);
+  static constexpr std::size_t kReadBeyond = 64;
   static constexpr int kMaxSide = 16384;
 
  private:

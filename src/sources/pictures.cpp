@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
+#include <cerrno>
 #include <string>
 
 #include "core/file.h"
@@ -50,24 +49,35 @@ bool has_its_end(AVCodecID codec, std::string_view bytes) {
   return true;
 }
 
-/// Decodes a whole file as one packet; nullptr when it is no picture or any part of it is missing or damaged.
-av::DecodedFrame decode(const std::string& bytes) {
+/// Decodes a whole file as one packet.
+///
+/// Errors  it is no picture, or any part of it is missing or damaged; too many pixels
+Result<av::DecodedFrame> decode(const std::string& bytes, const std::string& name) {
   const AVCodecID codec = picture_codec(bytes);
-  if (!has_its_end(codec, bytes)) return nullptr;
+  const auto refused = [&](int error) {
+    // What libav says of a size that it is not to decode.
+    const std::string why =
+        error == AVERROR(EINVAL) ? "it has " + av::too_many_pixels() : "it is cut short or damaged; copy or record it again";
+    return av::input_error(name, error, why);
+  };
+  if (!has_its_end(codec, bytes)) return refused(AVERROR_INVALIDDATA);
+  av::Packet packet(av_packet_alloc());
+  av::DecodedFrame frame(av_frame_alloc());
   const av::Decoder decoder = av::open_decoder(codec, [](AVCodecContext& context) {
     context.err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER;
     // libav's TIFF decoder refuses whole files when told to be strict, and cut ones always.
     if (context.codec_id != AV_CODEC_ID_TIFF) context.err_recognition |= AV_EF_EXPLODE;
-    context.max_pixels = std::int64_t{av::ToRgb::kMaxSide} * av::ToRgb::kMaxSide;
     return true;
   });
-  av::Packet packet(av_packet_alloc());
-  av::DecodedFrame frame(av_frame_alloc());
-  if (!decoder || !packet || !frame || av_new_packet(packet.get(), static_cast<int>(bytes.size())) < 0) return nullptr;
+  if (!decoder || !packet || !frame || av_new_packet(packet.get(), static_cast<int>(bytes.size())) < 0)
+    return refused(AVERROR(ENOMEM));
   bytes.copy(reinterpret_cast<char*>(packet->data), bytes.size());
-  if (avcodec_send_packet(decoder.get(), packet.get()) < 0) return nullptr;
-  avcodec_send_packet(decoder.get(), nullptr);
-  if (avcodec_receive_frame(decoder.get(), frame.get()) < 0 || av::is_damaged(*frame)) return nullptr;
+  int outcome = avcodec_send_packet(decoder.get(), packet.get());
+  if (outcome >= 0) avcodec_send_packet(decoder.get(), nullptr);
+  if (outcome >= 0) outcome = avcodec_receive_frame(decoder.get(), frame.get());
+  if (outcome < 0 || av::is_damaged(*frame)) return refused(outcome);
+  if (const std::string why = av::too_many_pixels({frame->width, frame->height}); !why.empty())
+    return av::input_error(name, 0, why);
   return frame;
 }
 
@@ -98,15 +108,8 @@ bool is_picture(std::string_view head) { return picture_codec(head) != AV_CODEC_
 
 Result<std::unique_ptr<Source>> open_picture(const std::filesystem::path& path) {
   constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes(std::istreambuf_iterator<char>(file), {});
-  if (file.bad() || bytes.size() > kMaxBytes)
-    return Error{ErrorCode::kBadInput,
-                 fmt::format("cannot read picture {}: reading failed or it is larger than 1 GiB", path.string())};
-  const av::DecodedFrame frame = decode(bytes);
-  if (!frame)
-    return Error{ErrorCode::kBadInput,
-                 fmt::format("cannot read picture {}: it is cut short or damaged; copy or record it again", path.string())};
+  DUO_TRY_ASSIGN(const std::string bytes, read_file(path, kMaxBytes, "picture"));
+  DUO_TRY_ASSIGN(const av::DecodedFrame frame, decode(bytes, "picture " + path.string()));
   Image<Rgb8> pixels;
   if (!av::ToRgb().convert(*frame, pixels))
     return Error{ErrorCode::kUnsupported,
@@ -121,8 +124,8 @@ Result<Image<std::uint16_t>> read_png16(const std::filesystem::path& path) {
   const auto refused = [&](const char* why) {
     return Error{ErrorCode::kBadInput, fmt::format("cannot read PNG picture '{}': {}", path.string(), why)};
   };
-  const av::DecodedFrame frame = picture_codec(bytes) == AV_CODEC_ID_PNG ? decode(bytes) : nullptr;
-  if (!frame) return refused("it is no PNG picture, or cut short");
+  if (picture_codec(bytes) != AV_CODEC_ID_PNG) return refused("it is no PNG picture");
+  DUO_TRY_ASSIGN(const av::DecodedFrame frame, decode(bytes, fmt::format("PNG picture '{}'", path.string())));
   Image<std::uint16_t> out({frame->width, frame->height});
   for (int y = 0; y < out.height(); ++y) {
     const std::uint8_t* from = frame->data[0] + std::ptrdiff_t{y} * frame->linesize[0];

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/capture_mark.h"
+#include "core/file.h"
 #include "duoptic/recording.h"
 #include "duoptic/source.h"
 #include "sources/libav.h"
@@ -20,15 +21,18 @@ std::string TwoTracks::tag(const char* name) const {
   return entry != nullptr ? entry->value : "";
 }
 
-TwoTracks open_two_tracks(const std::filesystem::path& path) {
+Result<TwoTracks> open_two_tracks(const std::filesystem::path& path) {
   TwoTracks out;
-  AVFormatContext* context = avformat_alloc_context();
-  if (context == nullptr) return out;
-  context->format_whitelist = av_strdup("matroska,webm");
-  context->protocol_whitelist = av_strdup("file");
+  av::Container container(avformat_alloc_context());
+  if (!container || !av::allow_only(*container, "matroska,webm", "file"))
+    return av::input_error("recording " + path.string(), AVERROR(ENOMEM), "");
+  AVFormatContext* context = container.release();
   // Frees the context itself when it fails.
-  if (avformat_open_input(&context, ("file:" + path.string()).c_str(), nullptr, nullptr) < 0) return out;
-  av::Container container(context);
+  if (const int e = avformat_open_input(&context, ("file:" + path.string()).c_str(), nullptr, nullptr); e < 0) {
+    if (is_exhausted(AVUNERROR(e))) return av::input_error("recording " + path.string(), e, "");
+    return out;
+  }
+  container.reset(context);
   for (unsigned i = 0; i < context->nb_streams; ++i)
     if (context->streams[i]->codecpar->codec_type == AVMEDIA_TYPE_VIDEO &&
         (context->streams[i]->disposition & AV_DISPOSITION_ATTACHED_PIC) == 0)  // a cover
@@ -79,7 +83,7 @@ struct Tally {
   void add(const AVPacket& packet, AVRational base) {
     const auto mark = CaptureMark::of(packet);
     last_ns = av::to_ns(packet.pts, base);
-    t_ns.push_back(mark ? mark->t_ns : last_ns);
+    t_ns.push_back(av::capture_ns(packet, base));
     last = mark ? mark->sequence : static_cast<std::uint64_t>(view.pictures);
     if (view.pictures++ == 0) first = last;
   }
@@ -103,7 +107,7 @@ void fill_times(const Tally& left, const Tally& right, RecordingReport& report) 
 }  // namespace
 
 Result<std::optional<RecordingHead>> read_recording_head(const std::filesystem::path& path) {
-  const TwoTracks tracks = open_two_tracks(path);
+  DUO_TRY_ASSIGN(const TwoTracks tracks, open_two_tracks(path));
   if (!tracks.container) return std::optional<RecordingHead>();
   RecordingHead head;
   DUO_TRY_ASSIGN(head.rig, tracks.rig(path.string()));
@@ -113,7 +117,7 @@ Result<std::optional<RecordingHead>> read_recording_head(const std::filesystem::
 
 Result<RecordingReport> inspect_recording(const std::filesystem::path& path) {
   if (const auto opened = open_source(path); !opened) return opened.error();  // says why it cannot be read at all
-  const TwoTracks tracks = open_two_tracks(path);
+  DUO_TRY_ASSIGN(const TwoTracks tracks, open_two_tracks(path));
   if (!tracks.container)
     return Error{ErrorCode::kBadInput,
                  fmt::format("cannot play {}: it is no recording, a Matroska file with two video tracks", path.string())};
@@ -130,6 +134,8 @@ Result<RecordingReport> inspect_recording(const std::filesystem::path& path) {
     for (int i = 0; i < 2; ++i)
       if (packet->stream_index == tracks.views[i]->index && (packet->flags & AV_PKT_FLAG_CORRUPT) == 0)
         tally[i].add(*packet, tracks.views[i]->time_base);
+  if (!packet || (read < 0 && is_exhausted(AVUNERROR(read))))
+    return av::input_error("recording " + path.string(), AVERROR(ENOMEM), "");
   for (Tally& t : tally) t.finish();
   report.left = tally[0].view;
   report.right = tally[1].view;

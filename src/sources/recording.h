@@ -28,7 +28,8 @@ struct TwoTracks {
   /// Errors  one that cannot be
   Result<std::optional<Rig>> rig(const std::string& name) const;
 };
-TwoTracks open_two_tracks(const std::filesystem::path& path);
+/// Errors  the machine lacks memory or files
+Result<TwoTracks> open_two_tracks(const std::filesystem::path& path);
 
 struct RecordingHead {
   std::int64_t pairs = 0;  // by its index; 0: it has none, because it was killed or cut

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <string>
 
 #include "core/capture_mark.h"
+#include "core/file.h"
 #include "sources/libav.h"
 
 namespace duo {
@@ -16,8 +18,8 @@ namespace {
 // Containers that hold nothing but their own bytes: play lists and the like could reach other files or the network.
 constexpr char kContainers[] = "avi,matroska,webm,mov,mp4,mpegts,mpeg";
 
-Error unreadable(const std::filesystem::path& path, const std::string& why) {
-  return Error{ErrorCode::kBadInput, fmt::format("cannot read video {}: {}", path.string(), why)};
+Error unreadable(const std::filesystem::path& path, int error, const std::string& why) {
+  return av::input_error("video " + path.string(), error, why);
 }
 
 class VideoFile final : public Source {
@@ -33,6 +35,9 @@ class VideoFile final : public Source {
   enum class Decoded { kFrame, kEnd, kCut };
   Decoded decode();
   Decoded end_of_file() const;
+  void fail(int error) {
+    if (is_exhausted(AVUNERROR(error)) && error != AVERROR(EAGAIN)) failure_ = error;
+  }
   bool follows();
   std::int64_t announced_packets() const;
   TimeNs announced_end_ns() const;
@@ -58,6 +63,7 @@ class VideoFile final : public Source {
   TimeNs recorded_frame_ns_ = 0;  // of our own recordings: from picture to picture; 0: not one
   TimeNs end_ns_ = 0;             // where the last packet ends
   std::uint64_t given_ = 0;
+  int failure_ = 0;       // libav's, where it is not the file's fault
   bool drained_ = false;  // the decoder was told that nothing follows
   bool cut_ = false;
   bool pending_ = false;  // frame_ holds a picture that next() has not given yet
@@ -75,17 +81,19 @@ int video_stream(AVFormatContext* container, std::optional<int> track) {
 
 Result<void> VideoFile::open(const std::filesystem::path& path, std::optional<int> track) {
   name_ = path.string();
-  AVFormatContext* context = avformat_alloc_context();
-  if (context == nullptr || !frame_ || !packet_ || !sent_) return unreadable(path, "out of memory");
-  context->format_whitelist = av_strdup(kContainers);
-  context->protocol_whitelist = av_strdup("file");
+  if (!frame_ || !packet_ || !sent_) return unreadable(path, AVERROR(ENOMEM), "");
+  av::Container opening(avformat_alloc_context());
+  if (!opening || !av::allow_only(*opening, kContainers, "file")) return unreadable(path, AVERROR(ENOMEM), "");
+  AVFormatContext* context = opening.release();
   // Frees the context itself when it fails.
   if (const int e = avformat_open_input(&context, ("file:" + name_).c_str(), nullptr, nullptr); e < 0)
-    return unreadable(path, "it is no picture or video that can be read, or it was cut before its index was written");
+    return unreadable(path, e, "it is no picture or video that can be read, or it was cut before its index was written");
   container_.reset(context);
-  if (const int e = avformat_find_stream_info(context, nullptr); e < 0) return unreadable(path, av::reason(e));
+  if (const int e = av::find_streams(*context); e < 0) return unreadable(path, e, av::reason(e));
   stream_ = video_stream(context, track);
-  if (stream_ < 0) return unreadable(path, "it holds no video");
+  if (stream_ < 0) return unreadable(path, 0, "it holds no video");
+  if (const std::string why = av::too_many_pixels({stream().codecpar->width, stream().codecpar->height}); !why.empty())
+    return unreadable(path, 0, why);
   for (unsigned i = 0; i < context->nb_streams; ++i)
     context->streams[i]->discard = static_cast<int>(i) == stream_ ? AVDISCARD_DEFAULT : AVDISCARD_ALL;
   decoder_ = av::open_decoder(stream().codecpar->codec_id, [this](AVCodecContext& decoder) {
@@ -97,7 +105,7 @@ Result<void> VideoFile::open(const std::filesystem::path& path, std::optional<in
                  fmt::format("cannot read video {}: no decoder for {}", name_, avcodec_get_name(stream().codecpar->codec_id))};
   recorded_frame_ns_ = CaptureMark::frame_ns(*context);
   announced_ = announced_packets();
-  if (decode() != Decoded::kFrame) return unreadable(path, "no whole picture at its start");
+  if (decode() != Decoded::kFrame) return unreadable(path, failure_, "no whole picture at its start");
   pending_ = true;
   size_ = {frame_->width, frame_->height};
   return {};
@@ -152,6 +160,7 @@ VideoFile::Decoded VideoFile::decode() {
     const int received = avcodec_receive_frame(decoder_.get(), frame_.get());
     if (received == AVERROR_EOF) return end_of_file();
     if (received >= 0 && !av::is_damaged(*frame_) && follows()) return Decoded::kFrame;
+    if (received < 0) fail(received);
     if (received != AVERROR(EAGAIN)) return cut_ = true, Decoded::kCut;
     if (drained_) return Decoded::kCut;
 
@@ -167,11 +176,13 @@ VideoFile::Decoded VideoFile::decode() {
       const TimeNs duration = packet_->duration > 0 ? av::to_ns(packet_->duration, stream().time_base) : frame_ns();
       end_ns_ = std::max(end_ns_, av::to_ns(start, stream().time_base) + duration);
     }
+    if (read < 0) fail(read);
     cut_ = !whole && read != AVERROR_EOF;
     drained_ = !whole;
     const int sent = avcodec_send_packet(decoder_.get(), whole ? packet_.get() : nullptr);
     av_packet_unref(sent_.get());
     av_packet_move_ref(sent_.get(), packet_.get());
+    if (sent < 0) fail(sent);
     if (sent < 0 && sent != AVERROR_EOF) {
       // What the decoder holds back is whole: it is still given.
       cut_ = drained_ = true;
@@ -183,6 +194,7 @@ VideoFile::Decoded VideoFile::decode() {
 Result<Next> VideoFile::next(Picture& into) {
   const Decoded decoded = pending_ ? Decoded::kFrame : decode();
   pending_ = false;
+  if (failure_ != 0) return av::input_error("video " + name_, failure_, "");
   if (decoded == Decoded::kEnd) return Next::kEnd;
   if (decoded == Decoded::kCut) return Next::kCut;
   if (Size{frame_->width, frame_->height} != size_)

@@ -1,8 +1,14 @@
 // One live camera: what it gives, and what it says when it does not; two of them opened together.
 #include "sources/camera/camera.h"
 
-#include <random>
+#include <sys/mman.h>
+#include <unistd.h>
 
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "sources/camera/decode.h"
 #include "sources/camera/modes.h"
 #include "tests/camera_desk.h"
 
@@ -316,6 +322,73 @@ TEST(LiveCamera, OneThatFallsSilentIsOpenedAgain) {
   ASSERT_TRUE(picture_of(*camera, desk, picture));
   EXPECT_LT(desk.now() - start, 2000 * kMs);
   EXPECT_NE(camera->warning().find("is back since"), std::string::npos) << camera->warning();
+}
+
+/// Bytes right before a page that nobody may read.
+class Guarded {
+ public:
+  explicit Guarded(std::size_t bytes) : bytes_(bytes) {
+    const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    mapped_ = (bytes + page - 1) / page * page + page;
+    start_ = static_cast<char*>(mmap(nullptr, mapped_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+    EXPECT_EQ(mprotect(start_ + mapped_ - page, page, PROT_NONE), 0);
+    data_ = start_ + mapped_ - page - bytes;
+    std::memset(data_, 0x55, bytes);
+  }
+  Guarded(const Guarded&) = delete;
+  Guarded& operator=(const Guarded&) = delete;
+  ~Guarded() { munmap(start_, mapped_); }
+  char* data() const { return data_; }
+  std::string_view bytes() const { return {data_, bytes_}; }
+
+ private:
+  std::size_t bytes_, mapped_;
+  char *start_, *data_;
+};
+
+std::size_t raw_bytes(std::uint32_t fourcc, Size size) {
+  const auto w = static_cast<std::size_t>(size.width), h = static_cast<std::size_t>(size.height);
+  return fourcc == fourcc_of("NV12") ? (w + 1) / 2 * 2 * (h + (h + 1) / 2) : 2 * w * h;
+}
+
+/// Whatever the size, no byte behind a driver's buffer is read; and the same pixels come out wherever it lies.
+TEST(CameraBuffers, AreNotReadBeyondTheirEnd) {
+  constexpr Size kSizes[] = {{424, 240}, {848, 480}, {1080, 1920}, {320, 240}, {2, 2}};
+  for (const auto fourcc : {fourcc_of("YUYV"), fourcc_of("UYVY"), fourcc_of("NV12")}) {
+    std::vector<Size> sizes(std::begin(kSizes), std::end(kSizes));
+    for (int width = 1; width < 140; ++width) sizes.push_back({width, 3 + width % 2});
+    CameraDecoder decoder;
+    for (const Size size : sizes) {
+      const Guarded guarded(raw_bytes(fourcc, size));
+      std::string elsewhere(guarded.bytes());
+      Picture picture, other;
+      const CameraFormat format{.fourcc = fourcc, .size = size};
+      ASSERT_EQ(decoder.decode(format, guarded.bytes(), picture), CameraDecoder::Outcome::kWhole) << size.width;
+      ASSERT_EQ(decoder.decode(format, elsewhere, other), CameraDecoder::Outcome::kWhole);
+      ASSERT_EQ(picture.pixels.at(size.height - 1, size.width - 1), other.pixels.at(size.height - 1, size.width - 1));
+    }
+  }
+}
+
+/// What every conversion's input has behind it is enough for libswscale, of any width.
+TEST(CameraBuffers, ThePaddingIsEnough) {
+  for (const AVPixelFormat kind : {AV_PIX_FMT_YUYV422, AV_PIX_FMT_UYVY422, AV_PIX_FMT_NV12})
+    for (int width = 2; width < 300; ++width) {
+      constexpr int kRows = 4;
+      const bool nv12 = kind == AV_PIX_FMT_NV12;
+      const int stride = nv12 ? (width + 1) / 2 * 2 : 2 * width;
+      const Guarded guarded(static_cast<std::size_t>(stride * (nv12 ? kRows * 3 / 2 : kRows)) + av::ToRgb::kReadBeyond);
+      const av::DecodedFrame frame(av_frame_alloc());
+      frame->format = kind;
+      frame->width = width;
+      frame->height = kRows;
+      frame->data[0] = reinterpret_cast<std::uint8_t*>(guarded.data());
+      frame->data[1] = nv12 ? frame->data[0] + std::ptrdiff_t{stride} * kRows : nullptr;
+      frame->linesize[0] = stride;
+      frame->linesize[1] = nv12 ? stride : 0;
+      Image<Rgb8> picture;
+      ASSERT_TRUE(av::ToRgb().convert(*frame, picture));
+    }
 }
 
 }  // namespace

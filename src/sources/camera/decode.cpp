@@ -12,7 +12,6 @@ av::Decoder jpeg_decoder() {
   av_log_set_level(AV_LOG_QUIET);  // what is lost is counted
   return av::open_decoder(AV_CODEC_ID_MJPEG, [](AVCodecContext& context) {
     context.err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_EXPLODE;
-    context.max_pixels = std::int64_t{av::ToRgb::kMaxSide} * av::ToRgb::kMaxSide;
     return true;
   });
 }
@@ -31,14 +30,17 @@ CameraDecoder::Outcome CameraDecoder::decode_raw(const CameraFormat& format, std
   const auto width = static_cast<std::size_t>(format.size.width), height = static_cast<std::size_t>(format.size.height);
   const std::size_t row_bytes = nv12 ? (width + 1) / 2 * 2 : 2 * width, rows = nv12 ? height + (height + 1) / 2 : height;
   const std::size_t stride = std::max(static_cast<std::size_t>(std::max(format.stride_bytes, 0)), row_bytes);
-  if (!frame_ || bytes.size() < stride * (rows - 1) + row_bytes) return Outcome::kDamaged;
+  const std::size_t size = stride * (rows - 1) + row_bytes;
+  if (!frame_ || bytes.size() < size) return Outcome::kDamaged;
+  raw_.resize(size + av::ToRgb::kReadBeyond);
+  std::memcpy(raw_.data(), bytes.data(), size);
   av_frame_unref(frame_.get());
   frame_->format = nv12 ? AV_PIX_FMT_NV12 : format.fourcc == fourcc_of("UYVY") ? AV_PIX_FMT_UYVY422 : AV_PIX_FMT_YUYV422;
   frame_->width = format.size.width;
   frame_->height = format.size.height;
   frame_->colorspace = AVCOL_SPC_SMPTE170M;
   frame_->color_range = AVCOL_RANGE_MPEG;
-  frame_->data[0] = reinterpret_cast<std::uint8_t*>(const_cast<char*>(bytes.data()));  // NOLINT: read only
+  frame_->data[0] = raw_.data();
   frame_->data[1] = nv12 ? frame_->data[0] + stride * height : nullptr;
   frame_->linesize[0] = static_cast<int>(stride);
   frame_->linesize[1] = nv12 ? static_cast<int>(stride) : 0;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "sources/camera/device.h"
 #include "sources/libav.h"
@@ -26,6 +27,7 @@ class CameraDecoder {
   Outcome decode_raw(const CameraFormat& format, std::string_view bytes, Picture& into);
   Outcome decode_jpeg(const CameraFormat& format, std::string_view bytes, Picture& into);
 
+  std::vector<std::uint8_t> raw_;  // a driver's buffer with room behind it
   av::Decoder jpeg_;
   av::Packet packet_{av_packet_alloc()};
   av::DecodedFrame frame_{av_frame_alloc()};
