@@ -1,6 +1,6 @@
 # The few commands that everybody needs. Each first installs what is missing (tools/setup; does nothing when all is there).
 # build/release has the tool, and once `make test` was called the tests; build/sanitize the tests with ASan and UBSan.
-.PHONY: build demo test bench soak format setup-build setup-test
+.PHONY: build demo test bench soak chaos fuzz format setup-build setup-test
 
 build: setup-build
 	@test -f build/release/build.ninja || cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=OFF >/dev/null
@@ -20,6 +20,17 @@ soak: setup-test
 	@cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=ON >/dev/null
 	@cmake --build build/release --target tool_test
 	@DUOPTIC_SOAK_S=600 build/release/tests/cli/tool_test --gtest_filter=Soak.*
+
+# A thousand rounds of faults by chance, about ten minutes.
+chaos: setup-test
+	@cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=ON >/dev/null
+	@cmake --build build/release --target tool_test
+	@DUOPTIC_CHAOS_ROUNDS=1000 build/release/tests/cli/tool_test --gtest_filter=Chaos.*
+
+# Random bytes for every reader, a minute each.
+fuzz: setup-test
+	@tools/setup check
+	@tools/fuzz 60
 
 format:
 	@tools/setup format

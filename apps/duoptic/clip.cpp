@@ -4,10 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "duoptic/sink.h"
+#include "json_file.h"
 
 namespace duo::app {
 namespace {
@@ -66,12 +65,8 @@ Result<ClipTruth> load_clip(const fs::path& folder) {
   clip.name = fs::weakly_canonical(folder).filename().string();
   DUO_TRY_ASSIGN(clip.rig, load_rig(folder / "calibration_truth.yml"));
   const fs::path path = folder / "truth.json";
-  std::ifstream file(path);
-  if (!file)
-    return Error{ErrorCode::kNotFound,
-                 fmt::format("cannot evaluate {}: it has no truth.json that can be read", folder.string())};
+  DUO_TRY_ASSIGN(const nlohmann::json truth, read_json(path));
   try {
-    const nlohmann::json truth = nlohmann::json::parse(file);
     clip.skew_ms = truth.at("meta").value("skew_ms", 0.0);
     clip.arm = side_named(truth.at("meta").at("selected_arm").get<std::string>());
     for (const auto& frame : truth.at("frames")) clip.frames.push_back(frame_of(frame.at("joints")));

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "duoptic/source.h"
 
 namespace duo::app {
 
@@ -52,6 +53,23 @@ int fail(const std::string& command, std::string what, Exit exit, bool json) {
   return static_cast<int>(exit);
 }
 
+/// Understood after the subcommand's name, too.
+void add_limit_option(CLI::App& app) {
+  const auto limit = [](double megapixels) { limit_pictures(static_cast<std::int64_t>(megapixels * 1e6)); };
+  app.add_option_function<double>("--max-megapixels", limit,
+                                  "Pictures of files and streams with more are refused before they are decoded")
+      ->type_name("N")
+      ->check(CLI::Range(0.001, 300.0))
+      ->default_str(fmt::format("{:.0f}", static_cast<double>(kMostPixels) * 1e-6));
+  const std::function<void(CLI::App&)> pass_on = [&](CLI::App& command) {
+    for (CLI::App* sub : command.get_subcommands({})) {
+      sub->fallthrough();
+      pass_on(*sub);
+    }
+  };
+  pass_on(app);
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Two cameras in, dense depth out.", "duoptic");
   app.require_subcommand(1);
@@ -64,6 +82,7 @@ int run(int argc, char** argv) {
                                          view::add(app),
 #endif
                                          version::add(app),   devices::add(app)};
+  add_limit_option(app);
   const auto chosen = [&]() -> const Command* {
     for (const Command& command : commands)
       if (command.app->parsed()) return &command;
@@ -93,5 +112,10 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a full quota then fails the write, which is reported like a full disk
-  return duo::app::run(argc, argv);
+  try {
+    return duo::app::run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::fputs("duoptic: out of memory\n", stderr);
+    return static_cast<int>(duo::app::Exit::kUnexpected);
+  }
 }

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "duoptic/engine.h"
 #include "duoptic/source.h"
+#include "json_file.h"
 
 namespace duo::app {
 namespace {
@@ -67,12 +67,27 @@ bool is_seen(const Image<float>& carried, int y, float x_right, float d) {
   return x_right > -0.5f && (in_front(std::floor(x_right)) || in_front(std::ceil(x_right)));
 }
 
-Result<nlohmann::json> load_meta(const fs::path& path) {
-  std::ifstream file(path);
-  nlohmann::json meta = nlohmann::json::parse(file, nullptr, false);
-  if (!meta.is_object() || meta.value("gt_scale", 0.0) <= 0 || meta.value("ndisp", 0) <= 0)
-    return Error{ErrorCode::kBadInput, fmt::format("cannot use {}: it must be JSON with gt_scale and ndisp", path.string())};
-  return meta;
+struct Meta {
+  double scale = 0;
+  int max_disparity = 0, border_px = 0;
+};
+
+Result<Meta> load_meta(const fs::path& path) {
+  DUO_TRY_ASSIGN(const nlohmann::json json, read_json(path));
+  const auto number = [&](const char* key, double otherwise) {
+    const auto at = json.find(key);
+    return at == json.end() ? otherwise : at->is_number() ? at->get<double>() : -1;
+  };
+  if (json.is_object()) {
+    constexpr double kMostBorder_px = 1 << 20;
+    const double scale = number("gt_scale", 0), most = number("ndisp", 0), border = number("eval_border", 0);
+    if (scale > 0 && most >= 1 && most <= Engine::kMaxDisparity && border >= 0 && border <= kMostBorder_px)
+      return Meta{scale, static_cast<int>(most), static_cast<int>(border)};
+  }
+  return Error{
+      ErrorCode::kBadInput,
+      fmt::format("cannot use {}: it must be JSON with numbers gt_scale > 0 and ndisp 1 .. {}, perhaps eval_border >= 0",
+                  path.string(), Engine::kMaxDisparity)};
 }
 
 }  // namespace
@@ -129,16 +144,15 @@ Result<std::vector<fs::path>> find_scenes(const std::vector<fs::path>& paths) {
 }
 
 Result<Scene> load_scene(const fs::path& folder) {
-  DUO_TRY_ASSIGN(const nlohmann::json meta, load_meta(folder / "meta.json"));
-  const double scale = meta.value("gt_scale", 1.0);
+  DUO_TRY_ASSIGN(const Meta meta, load_meta(folder / "meta.json"));
   Scene scene;
   scene.name = fs::weakly_canonical(folder).filename().string();
-  scene.max_disparity = meta.value("ndisp", 0);
+  scene.max_disparity = meta.max_disparity;
   DUO_TRY_ASSIGN(scene.pair.left, load_picture(folder / "left.png", {}));
   const Size size = scene.pair.left.pixels.size();
   DUO_TRY_ASSIGN(scene.pair.right, load_picture(folder / "right.png", size));
-  DUO_TRY_ASSIGN(scene.truth_px, load_truth(folder / "disp_left.png", size, scale));
-  scene.regions = derive_regions(scene.truth_px, meta.value("eval_border", 0));
+  DUO_TRY_ASSIGN(scene.truth_px, load_truth(folder / "disp_left.png", size, meta.scale));
+  scene.regions = derive_regions(scene.truth_px, meta.border_px);
   if (fs::exists(folder / "mask_nonocc.png") && fs::exists(folder / "mask_disc.png")) {
     DUO_TRY_ASSIGN(scene.regions.nonocc, load_mask(folder / "mask_nonocc.png", scene.regions.all, 255));
     DUO_TRY_ASSIGN(scene.regions.disc, load_mask(folder / "mask_disc.png", scene.regions.all, 255));

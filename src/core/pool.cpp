@@ -1,7 +1,7 @@
 #include "core/pool.h"
 
 #include <algorithm>
-#include <system_error>
+#include <exception>
 
 #include "core/check.h"
 #include "core/clock.h"
@@ -13,7 +13,7 @@ Pool::Pool(int threads) : in_use_(threads) {
   workers_.reserve(static_cast<std::size_t>(threads - 1));
   try {
     for (int part = 1; part < threads; ++part) workers_.emplace_back([this, part] { work(part); });
-  } catch (const std::system_error&) {  // the system allows no more: those there are do all
+  } catch (const std::exception&) {  // the system allows no more, or has no memory for it: those there are do all
     in_use_ = most();
   }
 }

@@ -86,7 +86,7 @@ class SimdEngine final : public Engine {
       rest();
       std::swap(prepared_, checked);
       if (was_prepared) make_frames();  // there was memory for that
-      return Error{ErrorCode::kUnsupported,
+      return Error{ErrorCode::kExhausted,
                    fmt::format("cannot set up {}x{} pixels with {} disparities: out of memory; smaller pictures, fewer "
                                "disparities or fewer paths need less",
                                setup.size.width, setup.size.height, setup.max_disparity)};

@@ -15,7 +15,7 @@
 
 namespace duo {
 
-SimdFrames::SimdFrames(const Prepared& prepared, int threads) : prepared_(prepared), pool_(threads), governor_(threads) {
+SimdFrames::SimdFrames(const Prepared& prepared, int threads) : prepared_(prepared), pool_(threads), governor_(pool_.most()) {
   for (Frame& frame : frames_) frame = make_frame(prepared);
   if (const auto* pyramid = std::get_if<PyramidParams>(&prepared.matcher))
     matcher_.emplace<simd::Pyramid>(pool_, *pyramid, match_setup(prepared));

@@ -257,6 +257,78 @@ TEST_F(Cli, FilesAppearTogetherOrNotAtAll) {
   const Ended ended = run("depth left.png right.png --max-disparity 16 -o taken");
   EXPECT_EQ(ended.exit, kOutput) << ended.err;
   EXPECT_EQ(std::distance(fs::directory_iterator(at("taken")), fs::directory_iterator()), 1);
+
+  // An earlier run's files stay all where one cannot be replaced, and are replaced all where each can.
+  const std::string depth = "depth left.png right.png --rig rig.json --max-disparity 16 -o ";
+  ASSERT_EQ(run(depth + "again").exit, 0);
+  const std::string depths = bytes_of(at("again/depth.png"));
+  for (const char* name : {"disparity.pfm", "disparity.png", "depth.png"}) put(at("again") / name, "earlier");
+  fs::remove(at("again/cloud.ply"));
+  fs::create_directory(at("again/cloud.ply"));
+  EXPECT_EQ(run(depth + "again").exit, kOutput);
+  for (const char* name : {"disparity.pfm", "disparity.png", "depth.png"}) EXPECT_EQ(bytes_of(at("again") / name), "earlier");
+  fs::remove(at("again/cloud.ply"));
+  fs::create_symlink(at("rig.json"), at("again/cloud.ply"));
+  const std::string rig = bytes_of(at("rig.json"));
+  EXPECT_EQ(run(depth + "again").exit, 0);
+  EXPECT_EQ(bytes_of(at("again/depth.png")), depths);
+  EXPECT_EQ(bytes_of(at("again/cloud.ply")).rfind("ply\n", 0), 0u);
+  EXPECT_EQ(bytes_of(at("rig.json")), rig);
+  EXPECT_EQ(std::distance(fs::directory_iterator(at("again")), fs::directory_iterator()), 4);
+}
+
+TEST_F(Cli, ScenesWithWrongTypes) {
+  fs::create_directory(at("scene"));
+  for (const char* meta :
+       {R"({"gt_scale": "4", "ndisp": 64})", R"({"gt_scale": 4, "ndisp": [64]})", R"({"gt_scale": 4, "ndisp": 1e300})",
+        R"({"gt_scale": 4, "ndisp": 64, "eval_border": {}})", R"({"gt_scale": null, "ndisp": true})", "[4, 64]",
+        R"({"gt_scale": 4, "ndisp": 64, "eval_border": -5})", "{", ""}) {
+    put(at("scene/meta.json"), meta);
+    expect_failure("eval middlebury scene", kInput, "scene/meta.json");
+  }
+}
+
+TEST_F(Cli, ALargestPictureIsAnOption) {
+  expect_failure("depth left.png right.png -o out --max-megapixels 0.019", kInput,
+                 "160x120 pixels, more than the 0.019 million");
+  expect_failure("--max-megapixels 0.019 depth left.png right.png -o out", kInput, "--max-megapixels reads more");
+  expect_failure("depth left.png right.png -o out --max-megapixels 0", kUsage, "--max-megapixels");
+  EXPECT_EQ(run("depth left.png right.png --max-disparity 16 -o out --max-megapixels 0.0192").exit, 0);
+}
+
+/// Fewer threads than asked for: the result does not depend on them. Memory and files that the machine refuses: exit 1, which
+/// says so, and nothing is left.
+TEST_F(Cli, GoesOnWithFewerThreadsAndSaysWhatTheMachineRefuses) {
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+  GTEST_SKIP() << "skipped: the sanitizer has the memory";
+#endif
+#endif
+  const std::string preload = "LD_PRELOAD='" DUO_FAULTS_LIBRARY "' DUO_FAULTS=";
+  const std::string depth = "depth left.png right.png --max-disparity 16 --engine simd --threads 4 ";
+  ASSERT_EQ(run(depth + "-o whole").exit, 0);
+  for (const char* threads : {"1+", "2+", "3", "4+"}) {
+    const Ended ended = run(depth + "-o few", preload + "threads=" + threads);
+    EXPECT_EQ(ended.exit, 0) << ended.err;
+    EXPECT_EQ(bytes_of(at("few/disparity.pfm")), bytes_of(at("whole/disparity.pfm")));
+  }
+  int refused = 0;
+  for (int n = 1; n < 600; n += 1 + n / 8)
+    for (const char* ever : {"", "+"}) {
+      const Ended ended = run(depth + "-o out", preload + "memory=" + std::to_string(n) + ever);
+      EXPECT_TRUE(ended.exit == 0 || ended.exit == 1) << n << ever << ": " << ended.exit << " " << ended.err;
+      EXPECT_TRUE(ended.exit == 0 || ended.err.find("memory") != std::string::npos) << n << ever << ": " << ended.err;
+      EXPECT_EQ(ended.exit == 0, fs::exists(at("out"))) << n << ever;
+      refused += ended.exit == 1;
+      fs::remove_all(at("out"));
+    }
+  EXPECT_GT(refused, 10);
+  for (int n = 1; n < 24; ++n) {
+    const Ended ended = run(depth + "-o out", preload + "files=" + std::to_string(n) + "+");
+    EXPECT_TRUE(ended.exit == 0 || ended.exit == 1) << n << ": " << ended.exit << " " << ended.err;
+    EXPECT_TRUE(ended.exit == 0 || ended.err.find("Too many open files") != std::string::npos) << n << ": " << ended.err;
+    fs::remove_all(at("out"));
+  }
 }
 
 TEST_F(Cli, ErrorsInJsonToo) {
