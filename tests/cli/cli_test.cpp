@@ -313,7 +313,7 @@ TEST_F(Cli, GoesOnWithFewerThreadsAndSaysWhatTheMachineRefuses) {
     EXPECT_EQ(bytes_of(at("few/disparity.pfm")), bytes_of(at("whole/disparity.pfm")));
   }
   int refused = 0;
-  for (int n = 1; n < 600; n += 1 + n / 8)
+  for (int n = 1; n < 600; n += 1 + n / 4)
     for (const char* ever : {"", "+"}) {
       const Ended ended = run(depth + "-o out", preload + "memory=" + std::to_string(n) + ever);
       EXPECT_TRUE(ended.exit == 0 || ended.exit == 1) << n << ever << ": " << ended.exit << " " << ended.err;
