@@ -23,7 +23,7 @@ target_sources(duoptic PRIVATE
 duoptic_test(sinks/files ${dir}/files_test.cpp)
 duoptic_test(sinks/tracked_frames ${dir}/tracked_frames_test.cpp)
 duoptic_test(sinks/other_programs ${dir}/motion_files_test.cpp ${dir}/osc_test.cpp)
-duoptic_test(sinks/recorder ${dir}/recorder_test.cpp)
+duoptic_test(sinks/recorder ${dir}/recorder_test.cpp ${dir}/recorder_names_test.cpp)
 if(DUO_TESTS)
   target_link_libraries(sinks_test PRIVATE PkgConfig::LIBLO opencv::core opencv::imgcodecs)
 endif()

@@ -11,100 +11,12 @@
 #include "duoptic/recording.h"
 #include "duoptic/source.h"
 #include "duoptic/synthetic.h"
-#include "tests/write_media.h"
+#include "tests/recorded_pairs.h"
 
 namespace duo {
 namespace {
 
 using namespace test;  // NOLINT: the writers of tests/write_media.h
-
-/// Noise and slopes in RGB: nothing that 4:2:0 could keep.
-Image<Rgb8> pixels_of(int t, int side) {
-  std::mt19937 random(static_cast<unsigned>(2 * t + side));
-  Image<Rgb8> out(kSize);
-  for (int y = 0; y < kSize.height; ++y)
-    for (int x = 0; x < kSize.width; ++x)
-      out.at(y, x) = {static_cast<std::uint8_t>(random()), static_cast<std::uint8_t>(4 * x + t),
-                      static_cast<std::uint8_t>(5 * y)};
-  return out;
-}
-
-std::vector<std::uint8_t> jpeg_of(int t) {
-  Encoder encoder = make_encoder(AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P);
-  std::vector<std::uint8_t> bytes;
-  encoder.encode(pattern(AV_PIX_FMT_YUVJ420P, t).get(), [&](AVPacket& p) { bytes.assign(p.data, p.data + p.size); });
-  return bytes;
-}
-
-/// Pair number t of two free-running cameras: odd nanoseconds, a right picture that is earlier or later, numbers that skip.
-Pair pair_of(int t, bool jpeg) {
-  Pair pair;
-  pair.left.pixels = pixels_of(t, 0);
-  pair.right.pixels = pixels_of(t, 1);
-  if (jpeg) {
-    pair.left.jpeg = jpeg_of(t);
-    pair.right.jpeg = jpeg_of(100 + t);
-  }
-  pair.left.t_ns = 987'654'321'123 + std::int64_t{t} * 33'333'337;
-  pair.right.t_ns = pair.left.t_ns + (t % 3 - 1) * 4'000'001;
-  pair.left.sequence = static_cast<std::uint64_t>(50 + t + (t > 4 ? 2 : 0));
-  pair.right.sequence = static_cast<std::uint64_t>(7 + t);
-  pair.sequence = static_cast<std::uint64_t>(t);
-  return pair;
-}
-constexpr TimeNs kStart_ns = 987'654'321'123 - 4'000'001;  // the first right picture
-
-RecorderSetup setup_with_rig() { return {.frame_s = 0.033333337, .rig = synthetic_rig({.size = kSize})}; }
-
-struct Written {
-  std::string bytes;
-  std::vector<std::size_t> end_of_pair;  // bytes of the file when each pair was in it
-};
-
-Written write_recording(const std::filesystem::path& path, int pairs, bool jpeg) {
-  Written out;
-  auto recorder = Recorder::open(path, setup_with_rig());
-  EXPECT_TRUE(recorder) << recorder.error().what;
-  for (int t = 0; t < pairs; ++t) {
-    EXPECT_TRUE(recorder->write(pair_of(t, jpeg)));
-    out.end_of_pair.push_back(static_cast<std::size_t>(recorder->bytes()));
-    EXPECT_EQ(std::filesystem::file_size(path), out.end_of_pair.back());  // with the system, not in our memory
-  }
-  EXPECT_TRUE(recorder->finish());
-  out.bytes = bytes_of(path);
-  return out;
-}
-
-struct Played {
-  std::vector<Pair> pairs;
-  Next end = Next::kPicture;
-  std::string warning, error;
-};
-
-Played play(const std::filesystem::path& path) {
-  Played out;
-  auto source = open_pairs(path, {});
-  if (!source) {
-    out.error = source.error().what;
-    return out;
-  }
-  while (true) {
-    Pair pair;
-    const auto next = (*source)->next(pair);
-    if (!next) out.error = next.error().what;
-    if (next) out.end = *next;
-    out.warning = (*source)->warning();
-    if (!next || *next != Next::kPicture) return out;
-    out.pairs.push_back(std::move(pair));
-  }
-}
-
-bool same(const Image<Rgb8>& a, const Image<Rgb8>& b) {
-  if (a.size() != b.size()) return false;
-  for (int y = 0; y < a.height(); ++y)
-    if (!std::equal(a.row(y), a.row(y) + a.width(), b.row(y))) return false;
-  return true;
-}
 
 TEST(Recorder, EveryPairComesBackAsItWas) {
   const TempFolder dir;
@@ -252,62 +164,6 @@ TEST(Recorder, NamesThatCannotBeTaken) {
   EXPECT_FALSE(std::filesystem::exists(dir / "empty.mkv"));  // no pair, no file
 }
 
-/// Whatever takes the name between open() and the first pair is not written, and nothing waits for it.
-TEST(Recorder, WhatOthersPutInItsPlaceStays) {
-  const TempFolder dir;
-  put(dir / "precious", "precious");
-  for (const std::string what : {"file", "link", "pipe"}) {
-    SCOPED_TRACE(what);
-    for (const bool writes : {true, false}) {
-      auto recorder = Recorder::open(dir / "a.mkv", {});
-      ASSERT_TRUE(recorder) << recorder.error().what;
-      std::filesystem::remove(dir / "a.mkv");
-      if (what == "file") put(dir / "a.mkv", "theirs");
-      if (what == "link") std::filesystem::create_symlink(dir / "precious", dir / "a.mkv");
-      if (what == "pipe") {
-        ASSERT_EQ(mkfifo((dir / "a.mkv").c_str(), 0600), 0);
-      }
-      if (writes) {
-        const auto written = recorder->write(pair_of(0, true));
-        ASSERT_FALSE(written);
-        EXPECT_EQ(written.error().code, ErrorCode::kWriteFailed);
-        EXPECT_NE(written.error().what.find("a.mkv"), std::string::npos) << written.error().what;
-        if (what == "file") {
-          EXPECT_EQ(bytes_of(dir / "a.mkv"), "theirs");
-        }
-      }
-      EXPECT_TRUE(recorder->finish());
-      if (writes) std::filesystem::remove(dir / "a.mkv");
-    }
-    EXPECT_TRUE(std::filesystem::exists(std::filesystem::symlink_status(dir / "a.mkv")));
-    EXPECT_EQ(bytes_of(dir / "precious"), "precious");
-    if (what == "file") {
-      EXPECT_EQ(bytes_of(dir / "a.mkv"), "theirs");
-    }
-    std::filesystem::remove(dir / "a.mkv");
-  }
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir / ""), std::filesystem::directory_iterator()), 1);
-}
-
-TEST(Recorder, AnEarlierOneIsReplacedByTheFirstPair) {
-  const TempFolder dir;
-  put(dir / "precious", "precious");
-  std::filesystem::create_symlink(dir / "precious", dir / "a.mkv");
-  { ASSERT_TRUE(Recorder::open(dir / "a.mkv", {.replace = true})); }
-  EXPECT_EQ(bytes_of(dir / "a.mkv"), "precious");  // no pair: as it was
-  auto recorder = Recorder::open(dir / "a.mkv", {.replace = true});
-  ASSERT_TRUE(recorder && recorder->write(pair_of(0, true)) && recorder->finish());
-  EXPECT_EQ(play(dir / "a.mkv").pairs.size(), 1u);
-  EXPECT_EQ(bytes_of(dir / "precious"), "precious");
-  auto late = Recorder::open(dir / "a.mkv", {.replace = true}), later = Recorder::open(dir / "a.mkv", {.replace = true});
-  ASSERT_TRUE(late && later);
-  for (int t = 0; t < 3; ++t) ASSERT_TRUE(late->write(pair_of(t, true)) && later->write(pair_of(t, true)));
-  ASSERT_TRUE(later->write(pair_of(3, true)) && late->finish() && later->finish());
-  const Played played = play(dir / "a.mkv");
-  EXPECT_EQ(played.pairs.size(), 4u) << played.error;
-  EXPECT_EQ(played.end, Next::kEnd);
-}
-
 TEST(Recorder, PicturesUnlikeTheFirstEndIt) {
   const TempFolder dir;
   auto recorder = Recorder::open(dir / "a.mkv", {});
@@ -348,61 +204,6 @@ TEST(Recorder, ReportAndFilesOfItsOwn) {
   put(dir / "words.mkv", "no recording");
   EXPECT_FALSE(inspect_recording(dir / "words.mkv"));
   EXPECT_FALSE(inspect_recording(dir / "l.avi"));
-}
-
-/// Two tracks of JPEGs that another program wrote, a pair each 40 ms, in units of `scale_ns`.
-void write_others(const std::filesystem::path& path, std::uint32_t scale_ns) {
-  AVFormatContext* muxer = nullptr;
-  ASSERT_GE(avformat_alloc_output_context2(&muxer, nullptr, "matroska", nullptr), 0);
-  for (int track = 0; track < 2; ++track) {
-    AVStream* stream = avformat_new_stream(muxer, nullptr);
-    stream->codecpar->codec_type = AVMEDIA_TYPE_VIDEO;
-    stream->codecpar->codec_id = AV_CODEC_ID_MJPEG;
-    stream->codecpar->width = kSize.width;
-    stream->codecpar->height = kSize.height;
-  }
-  ASSERT_GE(avio_open(&muxer->pb, path.c_str(), AVIO_FLAG_WRITE), 0);
-  ASSERT_GE(avformat_write_header(muxer, nullptr), 0);
-  for (int t = 0; t < 4; ++t)
-    for (int track = 0; track < 2; ++track) {
-      const auto jpeg = jpeg_of(t);
-      const av::Packet packet(av_packet_alloc());
-      ASSERT_GE(av_new_packet(packet.get(), static_cast<int>(jpeg.size())), 0);
-      std::copy(jpeg.begin(), jpeg.end(), packet->data);
-      packet->stream_index = track;
-      packet->flags |= AV_PKT_FLAG_KEY;
-      packet->pts = packet->dts = 40'000'000LL * t / scale_ns;  // the muxer counts ms: its scale is changed below
-      ASSERT_GE(av_write_frame(muxer, packet.get()), 0);
-    }
-  ASSERT_GE(av_write_trailer(muxer), 0);
-  avio_closep(&muxer->pb);
-  avformat_free_context(muxer);
-  std::string bytes = bytes_of(path);
-  const std::size_t scale = bytes.find("\x2A\xD7\xB1\x83\x0F\x42\x40");  // TimestampScale, 1000000 ns
-  ASSERT_NE(scale, std::string::npos);
-  for (std::size_t i = 0; i < 3; ++i) bytes[scale + 4 + i] = static_cast<char>(scale_ns >> (8 * (2 - i)));
-  put(path, bytes);
-}
-
-/// Every reader of times gives seconds, whatever unit the file counts in.
-TEST(Recorder, TimesOfAnyScale) {
-  const TempFolder dir;
-  for (const std::uint32_t scale_ns : {1'000'000u, 100'000u, 250'000u, 10'000'000u}) {
-    SCOPED_TRACE(scale_ns);
-    write_others(dir / "a.mkv", scale_ns);
-    const auto exported = export_recording(dir / "a.mkv", {dir / "l.avi", dir / "r.avi", dir / "t.csv"});
-    ASSERT_TRUE(exported) << exported.error().what;
-    EXPECT_EQ(bytes_of(dir / "t.csv"),
-              "pair,left_t_s,right_t_s,left_number,right_number\n0,0.000000000,0.000000000,0,0\n"
-              "1,0.040000000,0.040000000,1,1\n2,0.080000000,0.080000000,2,2\n3,0.120000000,0.120000000,3,3\n");
-    const auto report = inspect_recording(dir / "a.mkv");
-    ASSERT_TRUE(report) << report.error().what;
-    EXPECT_NEAR(report->length_s, 0.12, 1e-9);
-    EXPECT_NEAR(report->longest_gap_s, 0.04, 1e-9);
-    const Played played = play(dir / "a.mkv");
-    ASSERT_EQ(played.pairs.size(), 4u) << played.error;
-    for (int t = 0; t < 4; ++t) EXPECT_EQ(played.pairs[static_cast<std::size_t>(t)].right.t_ns, 40'000'000LL * t);
-  }
 }
 
 TEST(RealTime, GivesPairsWhenTheyAreDueAndDropsLateOnes) {
