@@ -55,7 +55,7 @@ Result<Prepared> prepare_setup(const Setup& setup) {
   const Denoise denoise = setup.denoise != Denoise::kAuto ? setup.denoise : (setup.rig ? kRawDenoise : Denoise::kNone);
   out.median = denoise == Denoise::kMedian || denoise == Denoise::kBoth;
   out.gaussian = denoise == Denoise::kGaussian || denoise == Denoise::kBoth;
-  out.color = setup.wants.color || setup.wants.observer;
+  out.color = setup.wants.color || setup.wants.on_device;
 
   out.size = setup.size;
   if (setup.rig) {

@@ -9,7 +9,7 @@
 #include "matchers/pyramid/pyramid_params.h"
 #include "matchers/sgm/sgm_params.h"
 #include "trackers/arm/arm_tracker.h"
-#include "trackers/arm/thesis_tracker.h"
+#include "trackers/thesis/thesis_tracker.h"
 
 namespace duo {
 

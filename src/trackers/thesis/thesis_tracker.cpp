@@ -1,4 +1,4 @@
-#include "trackers/arm/thesis_tracker.h"
+#include "trackers/thesis/thesis_tracker.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,10 @@
 
 #include "core/check.h"
 #include "stages/sums/sums.h"
-#include "trackers/arm/pinhole.h"
-#include "trackers/arm/raw_left.h"
-#include "trackers/arm/thesis_observe.h"
+#include "trackers/pinhole.h"
+#include "trackers/raw_left.h"
+#include "trackers/thesis/device_observer.h"
+#include "trackers/thesis/map_observer.h"
 
 namespace duo {
 namespace {
@@ -32,7 +33,7 @@ class ThesisTracker final : public Tracker {
  public:
   const char* name() const override { return "thesis"; }
   std::span<const Skeleton* const> skeletons() const override { return arm::kArms; }
-  Wants wants() const override { return {.views = false, .disparity = false, .observer = true}; }
+  Wants wants() const override { return {.views = false, .disparity = false, .on_device = true}; }
   Result<void> prepare(const TrackerSetup& setup) override;
   Result<std::span<const Person>> select(const Frame& frame, std::span<const Selection> selections) override;
   std::span<const Person> track(const Frame& frame) override;
@@ -48,8 +49,9 @@ class ThesisTracker final : public Tracker {
 
   std::optional<arm::RawLeft> view_;  // empty before prepare()
   double frame_s_ = 0;
-  std::optional<arm::MapObserver> map_observer_;  // likewise
-  std::vector<FollowedJoint> joints_;             // three per arm, in the order of its skeleton
+  std::optional<thesis::MapObserver> map_observer_;  // likewise
+  std::unique_ptr<thesis::DeviceObserver> device_observer_ = thesis::make_device_observer();
+  std::vector<FollowedJoint> joints_;  // three per arm, in the order of its skeleton
   Expectation expected_;
   Observation seen_;
   std::vector<Person> people_;
@@ -89,8 +91,8 @@ Result<FollowedJoint> ThesisTracker::learn(const Frame& frame, Vec2 click_px, st
 Result<std::span<const Person>> ThesisTracker::select(const Frame& frame, std::span<const Selection> selections) {
   DUO_CHECK(view_.has_value());
   const Frame* maps = &frame;
-  if (frame.observer != nullptr) {
-    DUO_TRY_ASSIGN(maps, frame.observer->maps());
+  if (frame.on_device != nullptr) {
+    DUO_TRY_ASSIGN(maps, device_observer_->maps(*frame.on_device));
   }
   DUO_TRY(view_->check(*maps, selections.size()));
   std::vector<FollowedJoint> joints;
@@ -130,13 +132,13 @@ void ThesisTracker::expect() {
   expected_.count = static_cast<int>(joints_.size());
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const FollowedJoint& joint = joints_[i];
-    expected_.joints[i] = {arm::blob_target(joint.hue, arm::joint_window(view_->geometry().size, joint.at)), joint.at};
+    expected_.joints[i] = {thesis::blob_target(joint.hue, thesis::joint_window(view_->geometry().size, joint.at)), joint.at};
   }
 }
 
 /// On the device where the frame lies there, else in its maps.
 bool ThesisTracker::observe(const Frame& frame) {
-  if (frame.observer != nullptr) return frame.observer->observe(expected_, seen_);
+  if (frame.on_device != nullptr) return device_observer_->observe(*frame.on_device, expected_, seen_);
   map_observer_->look_at(frame);
   map_observer_->observe(expected_, seen_);
   return true;
@@ -148,7 +150,7 @@ void ThesisTracker::reset() {
 }
 
 void ThesisTracker::publish() {
-  const auto camera = arm::Pinhole::of(view_->geometry());
+  const auto camera = Pinhole::of(view_->geometry());
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const FollowedJoint& joint = joints_[i];
     Joint& out = people_[i / arm::kParts].joints[i % arm::kParts];

@@ -1,8 +1,8 @@
-#include "trackers/arm/thesis_observe.h"
+#include "trackers/thesis/map_observer.h"
 
-#include "stages/place_joints/place_joints.h"
+#include "trackers/thesis/place_joints.h"
 
-namespace duo::arm {
+namespace duo::thesis {
 
 MapObserver::MapObserver(Size size) : blobs_(size), points_({joint_window_px(size), joint_window_px(size)}) {}
 
@@ -27,4 +27,4 @@ void MapObserver::observe(const Expectation& expected, Observation& seen) {
   }
 }
 
-}  // namespace duo::arm
+}  // namespace duo::thesis

@@ -1,4 +1,4 @@
-#include "stages/place_joints/place_joints.h"
+#include "trackers/thesis/place_joints.h"
 
 #include <gtest/gtest.h>
 

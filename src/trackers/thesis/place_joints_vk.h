@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/sift_list.h"
-#include "stages/place_joints/place_joints.h"
+#include "trackers/thesis/place_joints.h"
 #include "vulkan/recorder.h"
 
 namespace duo::vk {

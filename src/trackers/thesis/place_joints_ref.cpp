@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/check.h"
-#include "stages/place_joints/place_joints.h"
+#include "trackers/thesis/place_joints.h"
 
 namespace duo::ref {
 namespace {

@@ -1,4 +1,4 @@
-#include "stages/place_joints/place_joints_vk.h"
+#include "trackers/thesis/place_joints_vk.h"
 
 #include "tests/records_vk.h"
 #include "tests/sift_points.h"

@@ -1,4 +1,4 @@
-#include "trackers/arm/raw_left.h"
+#include "trackers/raw_left.h"
 
 #include <fmt/format.h>
 

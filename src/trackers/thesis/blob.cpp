@@ -1,4 +1,4 @@
-#include "trackers/arm/thesis_blob.h"
+#include "trackers/thesis/blob.h"
 
 #include "core/check.h"
 #include "stages/erode/erode.h"
@@ -7,7 +7,7 @@
 #include "stages/region/region.h"
 #include "stages/sums/sums.h"
 
-namespace duo::arm {
+namespace duo::thesis {
 namespace {
 
 constexpr std::uint8_t kHueTolerance = 8, kLeastSaturation = 40, kLeastValue = 40;
@@ -58,4 +58,4 @@ void BlobFinder::find(Pool& pool, std::span<const ExpectedJoint> joints, std::sp
   }
 }
 
-}  // namespace duo::arm
+}  // namespace duo::thesis

@@ -1,4 +1,5 @@
-// What a tracker of coloured, textured joints expects in a frame, what is seen of it, and who looks on its behalf.
+// What the thesis tracker expects in a frame, and what is seen of it: plain numbers, a few kB, that travel to and from a
+// device.
 #pragma once
 
 #include <array>
@@ -11,7 +12,6 @@
 #include "core/sift_points.h"
 #include "core/targets.h"
 #include "duoptic/frame.h"
-#include "duoptic/result.h"
 
 namespace duo {
 
@@ -59,20 +59,6 @@ struct Observation {
   std::array<AreaSums, kMaxTargets> colors;  // the region of each joint's colour
   std::array<ObservedJoint, kMaxTargets> joints;
   std::array<StageTime, 12> stages{};  // as in Frame
-};
-
-/// Looks at one frame where it lies, on a device.
-///
-/// Threads  one at a time, which need not be the engine's caller
-class Observer {
- public:
-  virtual ~Observer() = default;
-  /// False when the device fails: nothing is seen of this frame, and the engine goes on without the device.
-  virtual bool observe(const Expectation& expected, Observation& seen) = 0;
-  /// left, color and disparity.d_q4 of the frame, for clicks; valid until the next call of any observer of the engine.
-  ///
-  /// Errors  device lost
-  virtual Result<const Frame*> maps() = 0;
 };
 
 }  // namespace duo

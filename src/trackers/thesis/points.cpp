@@ -1,8 +1,8 @@
-#include "trackers/arm/thesis_points.h"
+#include "trackers/thesis/points.h"
 
 #include <cmath>
 
-namespace duo::arm {
+namespace duo::thesis {
 
 PointFinder::PointFinder(Size largest_window)
     : scratch_(std::in_place, largest_window, JointPoints::kCapacity),
@@ -28,4 +28,4 @@ std::span<const PointMatch> PointFinder::find(Pool& pool, const Image<std::uint8
   return matches;
 }
 
-}  // namespace duo::arm
+}  // namespace duo::thesis

@@ -4,11 +4,11 @@
 #include <optional>
 #include <span>
 
-#include "core/observer.h"
 #include "core/pool.h"
 #include "core/run_forest.h"
+#include "trackers/thesis/observation.h"
 
-namespace duo::arm {
+namespace duo::thesis {
 
 /// The square around a place in which a joint is looked for.
 Window joint_window(Size size, PlaceQ4 at);
@@ -37,4 +37,4 @@ class BlobFinder {
   RunForestScratch forest_;
 };
 
-}  // namespace duo::arm
+}  // namespace duo::thesis

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "core/observer.h"
+#include "trackers/thesis/observation.h"
 
 namespace duo {
 

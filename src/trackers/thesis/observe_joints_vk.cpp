@@ -1,4 +1,4 @@
-#include "trackers/arm/thesis_vk.h"
+#include "trackers/thesis/observe_joints_vk.h"
 
 #include <algorithm>
 #include <cstring>

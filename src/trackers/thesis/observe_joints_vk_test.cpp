@@ -1,9 +1,9 @@
 // The thesis tracker's look at a frame on a device: the same joints as by its own look at the maps.
 
+#include "trackers/thesis/observe_joints_vk.h"
 #include "tests/agree_vk.h"
 #include "tests/targets.h"
-#include "trackers/arm/thesis_observe.h"
-#include "trackers/arm/thesis_vk.h"
+#include "trackers/thesis/map_observer.h"
 
 namespace duo {
 namespace {
@@ -45,14 +45,14 @@ struct Scene {
 };
 
 /// The joints of `clicks`, as learnt from a frame.
-Expectation learnt(arm::MapObserver& observer, const Frame& frame, std::span<const Pixel> clicks) {
+Expectation learnt(thesis::MapObserver& observer, const Frame& frame, std::span<const Pixel> clicks) {
   Expectation out;
   auto points = std::make_shared<std::vector<JointPoints>>();
   observer.look_at(frame);
   for (const Pixel& p : clicks) {
     ExpectedJoint& joint = out.joints[static_cast<std::size_t>(out.count++)];
     joint.at = {16 * p.x, 16 * p.y};
-    joint.target = arm::blob_target(observer.hue_at(p).value(), arm::joint_window(kSize, joint.at));
+    joint.target = thesis::blob_target(observer.hue_at(p).value(), thesis::joint_window(kSize, joint.at));
     points->push_back(observer.points_around(joint.at));
   }
   out.points = std::move(points);
@@ -63,7 +63,7 @@ TEST(ObserveVk, SeesWhatTheCpuSees) {
   if (test::assisted()) GTEST_SKIP() << "each of its kernels is checked alone";
   test::each_device([&](vk::Device& device, const std::string& where) {
     auto joints = test::must(vk::ObserveJoints::make(device, kSize));
-    arm::MapObserver on_cpu(kSize);
+    thesis::MapObserver on_cpu(kSize);
     auto points = test::must(vk::Recorder::make(device)), look = test::must(vk::Recorder::make(device));
     points.begin();
     joints.record_points(points);

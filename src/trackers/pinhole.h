@@ -5,7 +5,7 @@
 #include "duoptic/geometry.h"
 #include "duoptic/rig.h"
 
-namespace duo::arm {
+namespace duo {
 
 /// Units   pixels of its own scale; centres of pixels are whole numbers
 struct Pinhole {
@@ -30,4 +30,4 @@ struct Pinhole {
 /// The point `depth_m` behind p on its viewing ray: from the skin to the joint.
 inline Vec3 behind(Vec3 p, double depth_m) { return (1 + depth_m / norm(p)) * p; }
 
-}  // namespace duo::arm
+}  // namespace duo

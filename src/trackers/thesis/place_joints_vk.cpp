@@ -1,6 +1,6 @@
-#include "stages/place_joints/place_joints_vk.h"
+#include "trackers/thesis/place_joints_vk.h"
 
-#include "stages/place_joints/place_joints_params.h"
+#include "trackers/thesis/place_joints_params.h"
 
 namespace duo::vk {
 namespace {

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "core/observer.h"
 #include "core/pool.h"
 #include "stages/match_points/match_points.h"
 #include "stages/sift/sift.h"
+#include "trackers/thesis/observation.h"
 
-namespace duo::arm {
+namespace duo::thesis {
 
 class PointFinder {
  public:
@@ -30,4 +30,4 @@ class PointFinder {
   std::vector<PointMatch> matches_;
 };
 
-}  // namespace duo::arm
+}  // namespace duo::thesis

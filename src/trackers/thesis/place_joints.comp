@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_16bit_storage : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
-#include "stages/place_joints/place_joints_params.h"
+#include "trackers/thesis/place_joints_params.h"
 
 // A workgroup a joint. Of V votes: reads 8 bytes of each stored point, 16 more where it is matched; V^2 comparisons for each of x
 // and y, from shared memory: the median is the vote with V / 2 before it.

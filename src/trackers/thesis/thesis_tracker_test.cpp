@@ -1,5 +1,5 @@
 // The thesis's tracker on painted squares: follows them by hue, follows the light, loses what disappears.
-#include "trackers/arm/thesis_tracker.h"
+#include "trackers/thesis/thesis_tracker.h"
 
 #include <gtest/gtest.h>
 

@@ -1,16 +1,16 @@
 // The thesis tracker's look at a frame on a device: colours and points of all joints in one recording.
 #pragma once
 
-#include "core/observer.h"
 #include "core/sift_list.h"
 #include "stages/erode/erode_vk.h"
 #include "stages/hsv/hsv_vk.h"
 #include "stages/mark_targets/mark_targets_vk.h"
 #include "stages/match_points/match_points_vk.h"
-#include "stages/place_joints/place_joints_vk.h"
 #include "stages/region/region_vk.h"
 #include "stages/sift/sift_vk.h"
 #include "stages/sums/sums_vk.h"
+#include "trackers/thesis/observation.h"
+#include "trackers/thesis/place_joints_vk.h"
 
 namespace duo::vk {
 

@@ -1,10 +1,10 @@
 // The thesis tracker's look at the maps of a frame, on the CPU.
 #pragma once
 
-#include "trackers/arm/thesis_blob.h"
-#include "trackers/arm/thesis_points.h"
+#include "trackers/thesis/blob.h"
+#include "trackers/thesis/points.h"
 
-namespace duo::arm {
+namespace duo::thesis {
 
 /// What joints look like, and where they are by their colours and their points. On a device vk::ObserveJoints looks instead.
 class MapObserver {
@@ -27,4 +27,4 @@ class MapObserver {
   PointFinder points_;
 };
 
-}  // namespace duo::arm
+}  // namespace duo::thesis
