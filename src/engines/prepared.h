@@ -5,8 +5,8 @@
 #include <variant>
 
 #include "calib/rectification.h"
-#include "core/match_setup.h"
 #include "duoptic/engine.h"
+#include "matchers/match_setup.h"
 #include "matchers/pyramid/pyramid_params.h"
 #include "matchers/sgm/sgm_params.h"
 

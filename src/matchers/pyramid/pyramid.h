@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "core/clock.h"
-#include "core/gray_pair.h"
-#include "core/match_setup.h"
 #include "core/pool.h"
-#include "core/tile_sets.h"
+#include "matchers/match_setup.h"
 #include "matchers/pyramid/pyramid_params.h"
 #include "stages/balance/balance.h"
 #include "stages/match_around/match_around.h"
 #include "stages/match_tiles/match_tiles.h"
 #include "stages/speckle/speckle.h"
+#include "stages/types/gray_pair.h"
+#include "stages/types/tile_sets.h"
 
 namespace duo {
 

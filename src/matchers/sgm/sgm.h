@@ -2,13 +2,13 @@
 #pragma once
 
 #include "core/clock.h"
-#include "core/gray_pair.h"
-#include "core/match_planes.h"
-#include "core/match_setup.h"
 #include "core/pool.h"
+#include "matchers/match_setup.h"
 #include "matchers/sgm/sgm_params.h"
 #include "stages/balance/balance.h"
 #include "stages/speckle/speckle.h"
+#include "stages/types/gray_pair.h"
+#include "stages/types/match_planes.h"
 #include "stages/weighted_median/weighted_median.h"
 
 namespace duo {

@@ -8,10 +8,10 @@
 #include <memory>
 #include <vector>
 
-#include "core/match_planes.h"
 #include "core/pool.h"
 #include "core/row_band.h"
 #include "duoptic/frame.h"
+#include "stages/types/match_planes.h"
 
 namespace duo {
 

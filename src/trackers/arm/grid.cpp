@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "core/targets.h"
 
 namespace duo::arm {
 namespace {

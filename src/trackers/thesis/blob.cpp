@@ -22,7 +22,7 @@ Window joint_window(Size size, PlaceQ4 at) {
 }
 
 Target blob_target(std::uint8_t hue, const Window& window) {
-  return {{hue, kHueTolerance, kLeastSaturation, kLeastValue}, {}, window};
+  return {{hue, kHueTolerance, kLeastSaturation, kLeastValue}, window};
 }
 
 BlobFinder::BlobFinder(Size size) : hue_(size), saturation_(size), value_(size), marks_(size), eroded_(size), forest_(size) {}
@@ -36,7 +36,7 @@ std::optional<std::uint8_t> BlobFinder::learn(Pool& pool, Pixel click) {
   const auto hue = mean_hue(simd::sums(pool, {hue_.size(), around, hue_.view(), {}}));
   if (!hue) return {};
   const Target target = blob_target(*hue, around.window);
-  simd::mark_targets(pool, {hue_.view(), saturation_.view(), value_.view(), {}, {}, {&target, 1}}, marks_.view());
+  simd::mark_targets(pool, {hue_.view(), saturation_.view(), value_.view(), {&target, 1}}, marks_.view());
   const Area fitting{around.window, around.disc, marks_.view(), 1};
   if (simd::sums(pool, {hue_.size(), fitting, {}, {}}).count == 0) return {};
   return hue;
@@ -46,13 +46,12 @@ void BlobFinder::find(Pool& pool, std::span<const ExpectedJoint> joints, std::sp
   DUO_CHECK(joints.size() <= kMaxTargets && colors.size() >= joints.size());
   std::array<Target, kMaxTargets> targets;
   for (std::size_t i = 0; i < joints.size(); ++i) targets[i] = joints[i].target;
-  simd::mark_targets(pool, {hue_.view(), saturation_.view(), value_.view(), {}, {}, {targets.data(), joints.size()}},
-                     marks_.view());
+  simd::mark_targets(pool, {hue_.view(), saturation_.view(), value_.view(), {targets.data(), joints.size()}}, marks_.view());
   simd::erode(pool, marks_.view(), Neighbours::kFour, eroded_.view());
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const int bit = static_cast<int>(i);
     const Window& window = targets[i].window;
-    simd::keep_region(pool, {bit, window, duo::Region::Pick::kNearest, joints[i].at.pixel()}, eroded_.view(), forest_);
+    simd::keep_region(pool, {bit, window, joints[i].at.pixel()}, eroded_.view(), forest_);
     colors[i] =
         simd::sums(pool, {hue_.size(), {window, {}, eroded_.view(), static_cast<std::uint8_t>(1 << bit)}, hue_.view(), {}});
   }

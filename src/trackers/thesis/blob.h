@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/pool.h"
-#include "core/run_forest.h"
+#include "stages/types/run_forest.h"
 #include "trackers/thesis/observation.h"
 
 namespace duo::thesis {

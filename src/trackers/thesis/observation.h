@@ -9,9 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "core/sift_points.h"
-#include "core/targets.h"
 #include "duoptic/frame.h"
+#include "stages/mark_targets/mark_targets.h"
+#include "stages/sums/sums.h"
+#include "stages/types/sift_points.h"
 
 namespace duo {
 

@@ -52,7 +52,7 @@ Result<void> ObserveJoints::make_memory(Device& device) {
     std::size_t bytes;
     Memory memory = Memory::kDevice;
   } const each[] = {
-      {wanted_, "targets", MarkTargets::wanted_bytes(1), Memory::kUpload},
+      {targets_, "targets", MarkTargets::target_bytes(), Memory::kUpload},
       {tasks_, "regions wanted", Region::task_bytes(kMaxTargets), Memory::kUpload},
       {areas_, "areas", kMaxTargets * sizeof(DeviceArea), Memory::kUpload},
       {windows_, "windows", kMaxTargets * sizeof(Window), Memory::kUpload},
@@ -90,11 +90,11 @@ void ObserveJoints::record(Recorder& recorder, const Maps& maps) const {
   const auto hue = whole(hue_), saturation = whole(saturation_), value = whole(value_);
   hsv_.record(recorder, maps.color, {hue, saturation, value}, size_);
   recorder.stage("hsv");
-  mark_targets_.record(recorder, {hue, saturation, value, {}, {}, &wanted_}, whole(marks_), size_);
+  mark_targets_.record(recorder, {hue, saturation, value, &targets_}, whole(marks_), size_);
   recorder.stage("mark_targets");
   erode_.record(recorder, whole(marks_), Neighbours::kFour, whole(eroded_), size_);
   recorder.stage("erode");
-  region_.record(recorder, tasks_, kMaxTargets, {}, whole(eroded_), forest_, labels_, size_);
+  region_.record(recorder, tasks_, kMaxTargets, whole(eroded_), forest_, labels_, size_);
   recorder.stage("region");
   sums_.record(recorder, {&areas_, kMaxTargets, whole(eroded_), hue, {}}, partial_, colors_, size_);
   recorder.stage("sums");
@@ -121,12 +121,12 @@ bool ObserveJoints::expect(const Expectation& expected) {
     DUO_CHECK(window.width <= joint_window_px(size_) && window.height <= joint_window_px(size_));
     const int bit = static_cast<int>(i);
     targets[i] = joint.target;
-    regions[i] = {bit, window, duo::Region::Pick::kNearest, joint.at.pixel()};
+    regions[i] = {bit, window, joint.at.pixel()};
     put(areas_, i, device_area({window, {}, {}, static_cast<std::uint8_t>(1 << bit)}));
     put(windows_, i, window);
     put(places_, i, joint.at);
   }
-  MarkTargets::write({targets.data(), count}, {}, wanted_.mapped());
+  MarkTargets::write({targets.data(), count}, targets_.mapped());
   Region::write({regions.data(), count}, tasks_.mapped());
   if (expected.points == stored_) return false;
   stored_ = expected.points;

@@ -1,7 +1,6 @@
 // The thesis tracker's look at a frame on a device: colours and points of all joints in one recording.
 #pragma once
 
-#include "core/sift_list.h"
 #include "stages/erode/erode_vk.h"
 #include "stages/hsv/hsv_vk.h"
 #include "stages/mark_targets/mark_targets_vk.h"
@@ -9,6 +8,7 @@
 #include "stages/region/region_vk.h"
 #include "stages/sift/sift_vk.h"
 #include "stages/sums/sums_vk.h"
+#include "stages/types/sift_list.h"
 #include "trackers/thesis/observation.h"
 #include "trackers/thesis/place_joints_vk.h"
 
@@ -53,8 +53,8 @@ class ObserveJoints {
   Region::Scratch forest_;
   Sums::Scratch partial_;
   Sift::Scratch space_;
-  Buffer wanted_, tasks_, areas_, windows_, places_;  // written by the CPU for each frame
-  Buffer points_up_, ways_up_, points_, ways_;        // the stored points, and the way from each to its joint
+  Buffer targets_, tasks_, areas_, windows_, places_;  // written by the CPU for each frame
+  Buffer points_up_, ways_up_, points_, ways_;         // the stored points, and the way from each to its joint
   Buffer hue_, saturation_, value_, marks_, eroded_;
   Buffer labels_, colors_, seen_, matches_, joints_, colors_down_, joints_down_;
   std::shared_ptr<const std::vector<JointPoints>> stored_;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/sift_list.h"
+#include "stages/types/sift_list.h"
 #include "trackers/thesis/place_joints.h"
 #include "vulkan/recorder.h"
 

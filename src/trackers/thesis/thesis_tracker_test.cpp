@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/area.h"
 #include "core/lens.h"
-#include "core/targets.h"
 
 namespace duo {
 namespace {

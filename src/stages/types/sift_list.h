@@ -1,6 +1,6 @@
 // Included by C++ and by GLSL: lists of SIFT points as kernels keep them, several lists of one capacity in one buffer.
-#ifndef DUO_CORE_SIFT_LIST_H
-#define DUO_CORE_SIFT_LIST_H
+#ifndef DUO_STAGES_SIFT_LIST_H
+#define DUO_STAGES_SIFT_LIST_H
 #ifdef __cplusplus
 #include <algorithm>
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include <span>
 
 #include "core/check.h"
-#include "core/sift_points.h"
+#include "stages/types/sift_points.h"
 namespace duo {
 #endif
 

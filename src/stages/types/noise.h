@@ -1,6 +1,6 @@
 // Included by C++ and by GLSL: the level of a pair's noise, and what matching makes of it.
-#ifndef DUO_CORE_NOISE_H
-#define DUO_CORE_NOISE_H
+#ifndef DUO_STAGES_NOISE_H
+#define DUO_STAGES_NOISE_H
 #ifdef __cplusplus
 namespace duo {
 #define DUO_INLINE inline

@@ -23,8 +23,8 @@ struct MatchPlanes {
   Size size() const { return value[0].size(); }
 };
 
-/// The memory of one view's planes: a row of all of them lies together, an odd number of cache lines apart, as who compares pixels
-/// walks along all twelve at once. Twelve pictures a whole number of pages apart would share one set of the cache.
+/// The memory of one view's planes: a row of all of them lies together, an odd number of cache lines apart, as who compares
+/// pixels walks along all twelve at once. Twelve pictures a whole number of pages apart would share one set of the cache.
 class PlaneImages {
  public:
   static constexpr int kPadRight = 64;
