@@ -64,11 +64,11 @@ Result<void> Frames::make_kernels() {
   if (rectifies()) {
     DUO_TRY_ASSIGN(rectify_, Rectify::make(device_));
   }
-  if (const auto* pyramid = std::get_if<PyramidParams>(&prepared_.matcher)) {
-    DUO_TRY_ASSIGN(matcher_, Pyramid::make(device_, *pyramid, match_setup(prepared_)));
-  } else {
-    DUO_TRY_ASSIGN(matcher_, Sgm::make(device_, std::get<SgmParams>(prepared_.matcher), match_setup(prepared_)));
-  }
+  const auto make_matcher = [&]<class M>(const Chosen<M>& chosen) -> Result<void> {
+    DUO_TRY_ASSIGN(matcher_, M::Vulkan::make(device_, chosen.params, match_setup(prepared_)));
+    return {};
+  };
+  DUO_TRY(std::visit(make_matcher, prepared_.matcher));
   DUO_TRY_ASSIGN(fill_, Fill::make(device_));
   if (prepared_.setup.fill) {
     DUO_TRY_ASSIGN(weighted_median_, WeightedMedian::make(device_));
@@ -187,10 +187,8 @@ void Frames::record_match(Recorder& recorder, BufferView<std::uint8_t> left, Buf
     right_inside = whole<std::uint8_t>(views_[1].inside, prepared_.size);
   }
   if (prepared_.setup.wants.confidence) confidence = whole<std::uint8_t>(confidence_, prepared_.size);
-  if (const auto* pyramid = std::get_if<Pyramid>(&matcher_))
-    pyramid->record(recorder, {left, right, left_inside, right_inside}, d_q4);
-  else
-    std::get<Sgm>(matcher_).record(recorder, {left, right, left_inside, right_inside}, {d_q4, confidence});
+  const MatchInput pair{left, right, left_inside, right_inside};
+  std::visit([&](const auto& matcher) { matcher.record(recorder, pair, {d_q4, confidence}); }, *matcher_);
 }
 
 void Frames::record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right) {

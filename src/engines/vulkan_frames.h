@@ -4,11 +4,9 @@
 #include <array>
 #include <memory>
 #include <optional>
-#include <variant>
 
 #include "engines/prepared.h"
-#include "matchers/pyramid/pyramid_vk.h"
-#include "matchers/sgm/sgm_vk.h"
+#include "matchers/matchers_vk.h"
 #include "stages/depth/depth_vk.h"
 #include "stages/fill/fill_vk.h"
 #include "stages/gaussian/gaussian_vk.h"
@@ -88,7 +86,7 @@ class Frames {
   Median median_;
   Gaussian gaussian_;
   Rectify rectify_;
-  std::variant<std::monostate, Pyramid, Sgm> matcher_;
+  VulkanMatcher matcher_;
   Fill fill_;
   WeightedMedian weighted_median_;
   std::optional<Depth> depth_;
