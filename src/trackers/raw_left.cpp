@@ -43,8 +43,7 @@ Result<std::array<Vec2, kParts>> RawLeft::rectified(const Selection& selection) 
     const auto ray = lens_.ray_of(click);
     const Vec3 turned = ray ? geometry_.rig_from_left * *ray : Vec3{};
     if (!(turned.z > 0)) return bad("is seen by no ray of the lens, in the picture");
-    out[i] = {geometry_.cx_px + geometry_.focal_px * turned.x / turned.z,
-              geometry_.cy_px + geometry_.focal_px * turned.y / turned.z};
+    out[i] = geometry_.project(turned);
     if (!(out[i].x >= 0 && out[i].y >= 0 && out[i].x <= geometry_.size.width - 1 && out[i].y <= geometry_.size.height - 1))
       return bad("is not seen by both cameras, in the picture");
   }

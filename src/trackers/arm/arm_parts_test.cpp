@@ -7,11 +7,11 @@
 #include <random>
 #include <vector>
 
+#include "core/rotation.h"
 #include "tests/agree.h"
 #include "trackers/arm/bones.h"
 #include "trackers/arm/hand.h"
 #include "trackers/arm/patches.h"
-#include "trackers/arm/rotation.h"
 #include "trackers/arm/torso.h"
 
 namespace duo::arm {

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/check.h"
+#include "core/statistics.h"
 #include "trackers/thesis/place_joints.h"
 
 namespace duo::ref {
@@ -15,12 +16,6 @@ std::int32_t mean_q4(std::int64_t sum, std::int64_t count) {
 
 std::int32_t rounded_q4(float at_px) { return static_cast<std::int32_t>(std::floor(16.0f * at_px + 0.5f)); }
 
-std::int32_t median_q4(std::span<std::int32_t> votes) {
-  const auto middle = votes.begin() + static_cast<std::ptrdiff_t>(votes.size() / 2);
-  std::nth_element(votes.begin(), middle, votes.end());
-  return *middle;
-}
-
 std::optional<PlaceQ4> place_of_points(const JointEvidence& in) {
   std::array<std::int32_t, JointPoints::kCapacity> x, y;
   std::size_t votes = 0;
@@ -31,7 +26,7 @@ std::optional<PlaceQ4> place_of_points(const JointEvidence& in) {
     y[votes++] = rounded_q4(p.y_px) + in.to_joint[i].y;
   }
   if (votes < kLeastVotes) return {};
-  return PlaceQ4{median_q4({x.data(), votes}), median_q4({y.data(), votes})};
+  return PlaceQ4{median(std::span(x).first(votes)), median(std::span(y).first(votes))};
 }
 
 }  // namespace

@@ -68,8 +68,7 @@ Result<void> ThesisTracker::prepare(const TrackerSetup& setup) {
 
 /// 0 = none.
 double ThesisTracker::depth_m(std::uint32_t d_q4) const {
-  const Rectified& g = view_->geometry();
-  return d_q4 == 0 || d_q4 == Disparity::kNone ? 0 : 16 * g.focal_px * g.baseline_m / d_q4;
+  return d_q4 == 0 || d_q4 == Disparity::kNone ? 0 : view_->geometry().depth_m(d_q4 / 16.0);
 }
 
 /// Of a click on maps that are looked at.
@@ -150,12 +149,12 @@ void ThesisTracker::reset() {
 }
 
 void ThesisTracker::publish() {
-  const auto camera = Pinhole::of(view_->geometry());
+  const Pinhole& camera = view_->geometry();
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const FollowedJoint& joint = joints_[i];
     Joint& out = people_[i / arm::kParts].joints[i % arm::kParts];
     const double unseen_s = joint.unseen * frame_s_;
-    out.p_in_rig_m = camera.point({joint.at.x / 16.0, joint.at.y / 16.0}, joint.z_m);
+    out.p_in_rig_m = camera.unproject({joint.at.x / 16.0, joint.at.y / 16.0}, joint.z_m);
     out.cov_m2 = Covariance3::isotropic(kSigmaM + kSigmaGrowthMPerS * unseen_s);
     out.state = unseen_s > kLostAfterS ? JointState::kLost : unseen_s > 0 ? JointState::kInferred : JointState::kSeen;
     out.confidence = std::max(0.0, 1 - unseen_s / kLostAfterS);

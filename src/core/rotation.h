@@ -1,11 +1,11 @@
-// Small rotations.
+// Rotations about an axis.
 #pragma once
 
 #include <cmath>
 
 #include "duoptic/geometry.h"
 
-namespace duo::arm {
+namespace duo {
 
 /// The rotation by |w| radians around w.
 ///
@@ -23,4 +23,4 @@ inline Mat3 rotation_of(Vec3 w) {
 /// Axis times sine of a rotation's angle: its inverse for small angles.
 inline Vec3 axis_of(const Mat3& r) { return {0.5 * (r(2, 1) - r(1, 2)), 0.5 * (r(0, 2) - r(2, 0)), 0.5 * (r(1, 0) - r(0, 1))}; }
 
-}  // namespace duo::arm
+}  // namespace duo
