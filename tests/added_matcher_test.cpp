@@ -66,7 +66,7 @@ TEST(AddedMatcher, IsListed) {
 
 TEST(AddedMatcher, IsChecked) {
   ASSERT_TRUE(WithFlat::choose(flat_setup()));
-  Setup setup = flat_setup();
+  duo::Setup setup = flat_setup();
   setup.max_disparity = 11;
   EXPECT_NE(
       WithFlat::choose(setup).error().what.find("searches at most 10 disparities, not 11; lower it, or choose matcher sgm "

@@ -76,7 +76,7 @@ struct MatcherList {
                      fmt::format("prepare the engine: matcher {} does not say how sure it is; choose matcher {}, or do not ask "
                                  "for confidence",
                                  M::kName, names_of({Matchers::kTellsConfidence...}))};
-      return Chosen<M>{std::move(params)};
+      return Choice{Chosen<M>{std::move(params)}};
     });
   }
 
