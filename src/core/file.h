@@ -1,4 +1,4 @@
-// Whole files: read with a limit, written so that a reader never sees a half.
+// Whole files: read with a limit, written atomically.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ Result<void> write_file(const std::filesystem::path& path, std::string_view byte
 /// "cannot write 'path': why; what to do" for an errno.
 Error write_error(const std::filesystem::path& path, int error);
 
-/// A file written piece by piece: a hidden one beside `path` until publish(), gone with this object before that.
+/// A file written piece by piece. Until publish() it is a hidden file beside `path`, which the destructor removes.
 class PartialFile {
  public:
   /// Errors  those of write_file()

@@ -14,7 +14,7 @@ namespace duo {
 
 constexpr char kGstPrefix[] = "gst:";
 
-/// One connection. Nothing in it waits longer than it should: time, or who no longer wants it, ends every call into libav.
+/// One connection. A timeout, or a request to stop, ends every call into libav.
 class StreamInput {
  public:
   explicit StreamInput(std::function<bool()> unwanted) : unwanted_(std::move(unwanted)) {}

@@ -21,7 +21,7 @@ struct FrameMaps {
     Buffer color;  // Rgb8
     Buffer d_q4;   // u16
   };
-  std::shared_ptr<Device> device;  // first, so that it goes last
+  std::shared_ptr<Device> device;  // first member: destroyed last
   Size size;
   bool time_stages = false;
   std::vector<Slot> slots;

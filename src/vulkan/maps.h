@@ -1,4 +1,4 @@
-// Maps on a device: they lie without gaps between their rows, so that they travel as they are.
+// Maps on a device: rows without gaps, copied up and down as they are.
 #pragma once
 
 #include <cstring>
@@ -26,7 +26,7 @@ void pack(const Image<T>& src, const Buffer& dst) {
   for (int y = 0; y < src.height(); ++y) std::memcpy(dst.mapped().data() + static_cast<std::size_t>(y) * row, src.row(y), row);
 }
 
-/// Nothing where either is empty: what is not wanted.
+/// Does nothing where either is empty, since that map is not wanted.
 template <class T>
 void unpack(const Buffer& src, Image<T>& dst) {
   if (src.bytes() == 0 || dst.empty()) return;

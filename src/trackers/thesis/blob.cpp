@@ -27,7 +27,7 @@ Target blob_target(std::uint8_t hue, const Window& window) {
 
 BlobFinder::BlobFinder(Size size) : hue_(size), saturation_(size), value_(size), marks_(size), eroded_(size), forest_(size) {}
 
-void BlobFinder::look_at(Pool& pool, const Frame& frame) {
+void BlobFinder::begin(Pool& pool, const Frame& frame) {
   simd::hsv(pool, frame.color.view(), {hue_.view(), saturation_.view(), value_.view()});
 }
 

@@ -23,8 +23,8 @@ class BlobFinder {
   BlobFinder() = default;
   explicit BlobFinder(Size size);
 
-  /// Converts the frame; before everything else.
-  void look_at(Pool& pool, const Frame& frame);
+  /// Converts the frame that learn() and find() work on.
+  void begin(Pool& pool, const Frame& frame);
   /// The hue around a click, 256 = full circle.
   ///
   /// Errors  none where no pixel fits its own model: gray, or too dark

@@ -1,4 +1,4 @@
-// The thesis tracker's look at frames that stay on a device.
+// What the thesis tracker observes in frames that stay on a device.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// The look at frames on a device, by recordings made once for the slots of a setup.
+// Recordings that observe frames on a device, made once for the slots of a setup.
 #pragma once
 
 #include <memory>

@@ -6,9 +6,9 @@ namespace duo::thesis {
 
 MapObserver::MapObserver(Size size) : blobs_(size), points_({joint_window_px(size), joint_window_px(size)}) {}
 
-void MapObserver::look_at(const Frame& frame) {
+void MapObserver::begin(const Frame& frame) {
   frame_ = &frame;
-  blobs_.look_at(pool_, frame);
+  blobs_.begin(pool_, frame);
 }
 
 JointPoints MapObserver::points_around(PlaceQ4 joint) {

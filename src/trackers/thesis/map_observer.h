@@ -1,4 +1,4 @@
-// The thesis tracker's look at the maps of a frame, on the CPU.
+// What the thesis tracker observes in the maps of a frame, on the CPU.
 #pragma once
 
 #include "trackers/thesis/blob.h"
@@ -6,13 +6,13 @@
 
 namespace duo::thesis {
 
-/// What joints look like, and where they are by their colours and their points. On a device vk::ObserveJoints looks instead.
+/// The colours and points of joints, and where joints are by them. vk::ObserveJoints does the same on a device.
 class MapObserver {
  public:
   explicit MapObserver(Size size);
 
-  /// Before the rest: the maps to look at, which must live until the next call.
-  void look_at(const Frame& frame);
+  /// Takes the frame that the other calls are about; it must live until the next begin().
+  void begin(const Frame& frame);
   /// The hue around a click, 256 = full circle.
   ///
   /// Errors  none where no pixel fits its own model: gray, or too dark

@@ -33,7 +33,7 @@ struct JointPoints {
   std::vector<PlaceQ4> to_joint;  // one a point
 };
 
-/// A joint before it is looked for: its colour and window, its place in the last frame.
+/// A joint before it is observed: its colour and window, its place in the last frame.
 struct ExpectedJoint {
   Target target;
   PlaceQ4 at;

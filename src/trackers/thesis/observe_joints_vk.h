@@ -1,4 +1,4 @@
-// The thesis tracker's look at a frame on a device: colours and points of all joints in one recording.
+// What the thesis tracker observes in a frame on a device: colours and points of all joints in one recording.
 #pragma once
 
 #include "stages/erode/erode_vk.h"
@@ -16,7 +16,7 @@ namespace duo::vk {
 
 /// Kernels, and memory for one frame at a time.
 ///
-/// Exact    as the tracker's own look at the maps, but for SIFT; see vk::Sift
+/// Exact    as thesis::MapObserver, but for SIFT; see vk::Sift
 /// Threads  one
 class ObserveJoints {
  public:
@@ -28,7 +28,7 @@ class ObserveJoints {
   /// Errors  the device lacks memory, or the driver refuses a kernel
   static Result<ObserveJoints> make(Device& device, Size size);
 
-  /// What was expected last is looked for, each time the recording runs.
+  /// Each run of the recording observes what was expected last.
   void record(Recorder& recorder, const Maps& maps) const;
   /// Once after each expect() that gave true, before record().
   void record_points(Recorder& recorder) const;

@@ -1,4 +1,4 @@
-// The thesis tracker's look at a frame on a device: the same joints as by its own look at the maps.
+// What the thesis tracker observes on a device: the same joints as in the maps on the CPU.
 
 #include "trackers/thesis/observe_joints_vk.h"
 #include "tests/agree_vk.h"
@@ -48,7 +48,7 @@ struct Scene {
 Expectation learnt(thesis::MapObserver& observer, const Frame& frame, std::span<const Pixel> clicks) {
   Expectation out;
   auto points = std::make_shared<std::vector<JointPoints>>();
-  observer.look_at(frame);
+  observer.begin(frame);
   for (const Pixel& p : clicks) {
     ExpectedJoint& joint = out.joints[static_cast<std::size_t>(out.count++)];
     joint.at = {16 * p.x, 16 * p.y};
@@ -90,7 +90,7 @@ TEST(ObserveVk, SeesWhatTheCpuSees) {
         test::must(look.run());
         Observation got, want;
         joints.read(got);
-        on_cpu.look_at(scene.frame);
+        on_cpu.begin(scene.frame);
         on_cpu.observe(expected, want);
         for (std::size_t i = 0; i < count; ++i) {
           const std::string what = where + ", joint " + std::to_string(i) + " moved by " + std::to_string(moved_px);

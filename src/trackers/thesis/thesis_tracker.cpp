@@ -96,7 +96,7 @@ Result<std::span<const Person>> ThesisTracker::select(const Frame& frame, std::s
   DUO_TRY(view_->check(*maps, selections.size()));
   std::vector<FollowedJoint> joints;
   auto points = std::make_shared<std::vector<JointPoints>>();
-  map_observer_->look_at(*maps);
+  map_observer_->begin(*maps);
   for (const Selection& selection : selections) {
     DUO_TRY_ASSIGN(const auto clicks, view_->rectified(selection));
     for (std::size_t i = 0; i < clicks.size(); ++i) {
@@ -138,7 +138,7 @@ void ThesisTracker::expect() {
 /// On the device where the frame lies there, else in its maps.
 bool ThesisTracker::observe(const Frame& frame) {
   if (frame.on_device != nullptr) return device_observer_->observe(*frame.on_device, expected_, seen_);
-  map_observer_->look_at(frame);
+  map_observer_->begin(frame);
   map_observer_->observe(expected_, seen_);
   return true;
 }
