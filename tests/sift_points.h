@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "core/sift_points.h"
+#include "stages/types/sift_points.h"
 #include "tests/agree.h"
 
 namespace duo::test {

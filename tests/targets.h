@@ -1,28 +1,19 @@
-// Random targets for the observation stages: every kind of model, windows inside, across and outside the border.
+// Random targets: every kind of colour, windows inside, across and outside the border.
 #pragma once
 
 #include <random>
 
-#include "core/targets.h"
+#include "duoptic/frame.h"
+#include "stages/mark_targets/mark_targets.h"
 #include "tests/agree.h"
 
 namespace duo::test {
 
-/// `tables`: how many likelihood tables there are to point at.
-inline Target random_target(std::mt19937& rng, Size size, int tables) {
+inline Target random_target(std::mt19937& rng, Size size) {
   const auto below = [&](int n) { return static_cast<int>(rng() % static_cast<unsigned>(n)); };
   Target out;
-  out.color = {static_cast<std::uint8_t>(rng()),
-               static_cast<std::uint8_t>(below(130)),
-               static_cast<std::uint8_t>(below(64)),
-               static_cast<std::uint8_t>(below(64)),
-               static_cast<std::int16_t>(below(tables + 2) - 2),
-               100};
-  if (out.color.likelihood < 0) out.color.likelihood = -1;
-  out.gate.min_q4 = static_cast<std::uint16_t>(below(3) == 0 ? 0 : below(500));
-  out.gate.max_q4 = static_cast<std::uint16_t>(below(3) == 0 ? 65534 : out.gate.min_q4 + below(1000));
-  out.gate.background_tolerance_q4 = below(4) == 0 ? 70000 : below(200) - 50;
-  out.gate.pass_unknown = below(2) == 0;
+  out.color = {static_cast<std::uint8_t>(rng()), static_cast<std::uint8_t>(below(130)), static_cast<std::uint8_t>(below(64)),
+               static_cast<std::uint8_t>(below(64))};
   out.window = below(3) == 0 ? Window::all(size)
                              : Window{below(size.width + 4) - 4, below(size.height + 4) - 4, below(size.width + 8),
                                       below(size.height + 8)};

@@ -95,7 +95,7 @@ Result<Run> measure(Engine& engine, const Setup& setup, const Pair& pair, int re
   const Frame& first = once();
   run.bytes_down = bytes_of(first);
   std::unique_ptr<Tracker> tracker;
-  if (setup.wants.observer) {
+  if (setup.wants.on_device) {
     DUO_TRY_ASSIGN(tracker, tracker_on(first, engine, *setup.rig));
   }
   run.bytes_up = 2 * bytes_of(pair.left.pixels);
@@ -152,10 +152,10 @@ Result<nlohmann::json> device_table(const DeviceBench& what) {
         "latency", "GPU ms", "CPU ms", "frames/s", "MB up", "MB down", "stages, GPU ms");
   struct Sent {
     const char* name;
-    bool maps, observer;
+    bool maps, on_device;
   };
   for (const auto& [matcher, preset] : what.choices)
-    for (const auto& [sent, maps, observer] :
+    for (const auto& [sent, maps, on_device] :
          {Sent{"", false, false}, {", tracked", false, true}, {", all maps", true, false}}) {
       Setup setup;
       setup.size = size;
@@ -164,7 +164,8 @@ Result<nlohmann::json> device_table(const DeviceBench& what) {
       setup.preset = preset;
       setup.max_disparity = what.max_disparity;
       setup.fill = true;
-      setup.wants = {.color = maps, .depth = maps, .confidence = false, .views = maps, .disparity = maps, .observer = observer};
+      setup.wants = {
+          .color = maps, .depth = maps, .confidence = false, .views = maps, .disparity = maps, .on_device = on_device};
       setup.time_stages = true;
       DUO_TRY_ASSIGN(const Run run,
                      measure(*engine, setup, what.input->pair, what.repeat, fmt::format("{} {}{}", matcher, preset, sent)));

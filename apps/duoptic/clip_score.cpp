@@ -76,12 +76,11 @@ JointScore score_joint(const std::vector<JointSample>& samples) {
 
 void DepthTally::add(const Frame& frame, const Rectified& rectified, const Camera& left, const DepthTruth& truth) {
   if (truth.z_tenth_mm.empty()) return;
-  const double focal_baseline = rectified.focal_px * rectified.baseline_m;
   const Mat3 left_from_rig = transposed(rectified.rig_from_left);
   for (int y = 0; y < rectified.size.height; ++y)
     for (int x = 0; x < rectified.size.width; ++x) {
       if (!frame.left_inside.empty() && frame.left_inside.at(y, x) == 0) continue;
-      const Vec3 ray_in_rig = {(x - rectified.cx_px) / rectified.focal_px, (y - rectified.cy_px) / rectified.focal_px, 1};
+      const Vec3 ray_in_rig = rectified.unproject({double(x), double(y)}, 1);
       const Vec3 ray_in_left = left_from_rig * ray_in_rig;
       const long column = std::lround(left.fx_px * ray_in_left.x / ray_in_left.z + left.cx_px);
       const long row = std::lround(left.fy_px * ray_in_left.y / ray_in_left.z + left.cy_px);
@@ -89,7 +88,7 @@ void DepthTally::add(const Frame& frame, const Rectified& rectified, const Camer
       const int tenth_mm = truth.z_tenth_mm.at(static_cast<int>(row), static_cast<int>(column));
       if (truth.figure.at(static_cast<int>(row), static_cast<int>(column)) == 0 || tenth_mm == 0) continue;
       const double z_in_rig_m = tenth_mm * 1e-4 / ray_in_left.z;  // the ray has z = 1 in the rig frame
-      const double true_px = focal_baseline / z_in_rig_m;
+      const double true_px = rectified.disparity_px(z_in_rig_m);
       if (x < true_px) continue;  // beyond the right picture's border
       ++pixels_;
       const std::uint16_t d_q4 = frame.disparity.d_q4.at(y, x);

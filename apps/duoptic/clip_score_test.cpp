@@ -68,7 +68,7 @@ TEST(JointScore, FramesToRecover) {
 
 // Rig and left camera coincide: f = 100, b = 0.1 m, centre (1, 0). 5 px is z = 2 m.
 TEST(DepthScore, ByHand) {
-  const Rectified rectified{{8, 1}, 100, 1, 0, 0.1, {}, {}};
+  const Rectified rectified{{100, 1, 0, 0.1}, {8, 1}, {}, {}};
   Camera left;
   left.fx_px = left.fy_px = 100;
   left.cx_px = 1;
@@ -101,7 +101,7 @@ TEST(DepthScore, ByHand) {
 // 100 tan(0.17983) = 18.18, and z of its point is 1.003195 cos(0.17983) = 0.987017 of z in the rig frame. 2 m become 2.02631,
 // 4.93508 px.
 TEST(DepthScore, TurnsTheRayIntoTheRawCamera) {
-  Rectified rectified{{9, 1}, 100, 0, 0, 0.1, {}, {}};
+  Rectified rectified{{100, 0, 0, 0.1}, {9, 1}, {}, {}};
   const double c = std::cos(0.1), s = std::sin(0.1);
   rectified.rig_from_left = {{c, 0, -s, 0, 1, 0, s, 0, c}};
   Camera left;

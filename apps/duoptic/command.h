@@ -29,59 +29,6 @@ struct Command {
   std::function<Result<Exit>()> run;
 };
 
-// One namespace for each subcommand's file.
-namespace depth {
-Command add(CLI::App& app);
-}
-namespace track {
-Command add(CLI::App& app);
-}
-namespace eval {
-Command add(CLI::App& app);
-}
-namespace eval_clip {
-Command add(CLI::App& eval);
-}
-namespace bench {
-Command add(CLI::App& app);
-}
-namespace demo {
-Command add(CLI::App& app);
-}
-namespace synth {
-Command add(CLI::App& app);
-}
-namespace board {
-Command add(CLI::App& app);
-}
-namespace calibrate {
-Command add(CLI::App& app);
-}
-namespace rig {
-Command add(CLI::App& app);
-}
-namespace view {
-Command add(CLI::App& app);
-}
-namespace cameras {
-Command add(CLI::App& app);
-}
-namespace record {
-Command add(CLI::App& app);
-}
-namespace play {
-Command add(CLI::App& app);
-}
-namespace detect {
-Command add(CLI::App& app);
-}
-namespace devices {
-Command add(CLI::App& app);
-}
-namespace version {
-Command add(CLI::App& app);
-}
-
 /// The options that say which engine runs with which matcher.
 struct EngineOptions {
   std::string engine = "auto";

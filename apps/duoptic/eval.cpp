@@ -10,6 +10,7 @@
 
 #include "command.h"
 #include "duoptic/sink.h"
+#include "eval_clip.h"
 #include "output.h"
 #include "peers.h"
 #include "perturb.h"

@@ -11,6 +11,9 @@
 
 namespace duo::app::eval_clip {
 
+/// Adds `duoptic eval clip`.
+Command add(CLI::App& eval);
+
 struct ClipScore {
   std::string clip, tracker;
   std::int64_t first = 0, frames = 0;

@@ -8,7 +8,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
-#include "command.h"
+#include "commands.h"
 #include "duoptic/source.h"
 
 namespace duo::app {
@@ -74,14 +74,9 @@ int run(int argc, char** argv) {
   CLI::App app("Two cameras in, dense depth out.", "duoptic");
   app.require_subcommand(1);
   app.footer(kFooter);
-  const std::vector<Command> commands = {depth::add(app),     track::add(app),  eval::add(app),   bench::add(app),
-                                         demo::add(app),      synth::add(app),  board::add(app),  rig::add(app),
-                                         calibrate::add(app), play::add(app),   record::add(app), cameras::add(app),
-                                         detect::add(app),
-#ifdef DUO_VIEWER
-                                         view::add(app),
-#endif
-                                         version::add(app),   devices::add(app)};
+#define DUO_ADD(name) name::add(app),
+  const std::vector<Command> commands = {DUO_COMMANDS(DUO_ADD)};
+#undef DUO_ADD
   add_limit_option(app);
   const auto chosen = [&]() -> const Command* {
     for (const Command& command : commands)

@@ -62,7 +62,6 @@ Accuracy ideal_accuracy(const Frame& frame, const SyntheticPair& ideal) {
 
 Accuracy raw_accuracy(const Frame& frame, const Rectified& rectified, const SyntheticPair& raw) {
   Tally tally;
-  const double focal_baseline = rectified.focal_px * rectified.baseline_m;
   const Mat3 left_from_rig = transposed(rectified.rig_from_left);
   for (int y = 0; y < rectified.size.height; ++y)
     for (int x = 0; x < rectified.size.width; ++x) {
@@ -72,10 +71,8 @@ Accuracy raw_accuracy(const Frame& frame, const Rectified& rectified, const Synt
         tally.missing();
         continue;
       }
-      const double z = focal_baseline / disparity_px(d_q4);
-      const Vec3 p_in_rig_m = {(x - rectified.cx_px) / rectified.focal_px * z, (y - rectified.cy_px) / rectified.focal_px * z,
-                               z};
-      const Vec3 p_in_left_m = left_from_rig * p_in_rig_m;
+      const double z = rectified.depth_m(disparity_px(d_q4));
+      const Vec3 p_in_left_m = left_from_rig * rectified.unproject({double(x), double(y)}, z);
       const Pixel at = project(raw.rig.left, p_in_left_m);
       const long column = std::lround(at.x_px), row = std::lround(at.y_px);
       if (column < 0 || row < 0 || column >= raw.depth_left_m.width() || row >= raw.depth_left_m.height()) continue;

@@ -1,4 +1,4 @@
-// Coordinate systems by name: the same point as other programs count it.
+// Coordinate systems by name: those of other programs.
 #pragma once
 
 #include <array>

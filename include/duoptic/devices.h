@@ -20,8 +20,8 @@ struct DeviceInfo {
 /// Errors  built without Vulkan, no loader, no driver, no device: the reason in one line
 Result<std::vector<DeviceInfo>> vulkan_devices();
 
-/// What copying reaches on a device and between it and the CPU, in GB (1e9 bytes) a second; on the device, what is read and
-/// what is written both count.
+/// Rates of copies on a device and between it and the CPU, in GB (1e9 bytes) per second; on the device read and written bytes
+/// both count.
 struct DeviceSpeed {
   double copy_gb_s = 0, up_gb_s = 0, down_gb_s = 0;
 };

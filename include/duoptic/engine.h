@@ -33,8 +33,7 @@ struct Wants {
   bool confidence = false;  // how sure each disparity is; of the matcher sgm alone
   bool views = true;        // left and right, and where they are inside
   bool disparity = true;
-  bool observer =
-      false;  // what such a tracker needs: an observer of the device's frames; on the CPU views, disparity and colour
+  bool on_device = false;  // left, color and disparity stay on the device; an engine on the CPU gives them as maps
 };
 
 struct Setup {

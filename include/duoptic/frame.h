@@ -47,7 +47,12 @@ struct StageTime {
   std::int64_t cpu_ns = 0;  // of the whole process
 };
 
-class Observer;  // core/observer.h
+/// Of a frame whose left, color and disparity stay on the device that made them: a handle for trackers that have kernels of
+/// their own (want: on_device).
+class DeviceMaps {
+ public:
+  virtual ~DeviceMaps() = default;
+};
 
 /// All that is known of one instant; const once the engine has published it.
 ///
@@ -62,7 +67,7 @@ struct Frame {
   Disparity disparity;
   Image<std::uint8_t> confidence;      // 1 (doubtful) .. 255 (sure) where measured, else 0 (want: confidence)
   Image<std::uint16_t> depth_mm;       // z in the rig frame, 0 = none (want: depth; needs a rig)
-  Observer* observer = nullptr;        // looks at the frame on its device, while the frame lives (want: observer)
+  DeviceMaps* on_device = nullptr;     // valid as long as the frame (want: on_device); null on the CPU
   std::array<StageTime, 24> stages{};  // when asked for; ends at the first with wall_ns 0
 };
 

@@ -61,10 +61,31 @@ struct Rig {
   double baseline_m() const { return norm(right_from_left.t_m); }
 };
 
-/// The pair after row alignment: both cameras share one focal length and principal point.
-struct Rectified {
-  Size size;
+/// A camera without distortion, and its like `baseline_m` to the right of it.
+///
+/// Units   pixels of the left picture, the centre of the top-left one is (0, 0); metres, z along the axis
+struct Pinhole {
   double focal_px = 0, cx_px = 0, cy_px = 0, baseline_m = 0;
+
+  /// Where a point is seen; z > 0.
+  Vec2 project(Vec3 p_m) const { return {cx_px + focal_px * p_m.x / p_m.z, cy_px + focal_px * p_m.y / p_m.z}; }
+  /// The point that is seen there at this depth.
+  Vec3 unproject(Vec2 at_px, double z_m) const {
+    return {(at_px.x - cx_px) / focal_px * z_m, (at_px.y - cy_px) / focal_px * z_m, z_m};
+  }
+  /// The point that is seen there with this disparity, above 0.
+  Vec3 triangulate(Vec2 at_px, double d_px) const {
+    const double per_px_m = baseline_m / d_px;
+    return {(at_px.x - cx_px) * per_px_m, (at_px.y - cy_px) * per_px_m, focal_px * per_px_m};
+  }
+  double depth_m(double d_px) const { return focal_px * baseline_m / d_px; }
+  double disparity_px(double z_m) const { return focal_px * baseline_m / z_m; }
+};
+
+/// The pair after row alignment: both cameras share one focal length and principal point. The pinhole's points are in the rig
+/// frame.
+struct Rectified : Pinhole {
+  Size size;
   Mat3 rig_from_left;   // rotation from the raw left camera's axes to the rig frame's
   Mat3 rig_from_right;  // likewise for the right camera; the rig frame's origin is the left camera's centre
 };

@@ -68,7 +68,7 @@ std::pair<double, double> point_errors_m(const Rig& found, const Rig& truth, dou
       if (!a || !b || !true_left.covers(*a) || !true_right.covers(*b)) continue;
       const auto u = rectified_from_raw(*geometry, geometry->rig_from_left, left, *a);
       const auto v = rectified_from_raw(*geometry, geometry->rig_from_right, right, *b);
-      const Vec3 off_m = transposed(geometry->rig_from_left) * point_of(*geometry, u->x, u->y, u->x - v->x) - p_m;
+      const Vec3 off_m = transposed(geometry->rig_from_left) * geometry->triangulate(*u, u->x - v->x) - p_m;
       sum += dot(off_m, off_m), sum_z += off_m.z * off_m.z, ++count;
     }
   EXPECT_GT(count, 100);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calib/normal_equations.h"
+#include "core/statistics.h"
 
 namespace duo {
 namespace {
@@ -168,9 +169,8 @@ void measure_noise(const std::vector<const BoardView*>& views, const Board& boar
           corners.empty() ? 0 : std::sqrt(sum / static_cast<double>(corners.size()));
     }
     if (lengths.empty()) continue;
-    std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2), lengths.end());
     constexpr double kRayleighMedian = 1.1774;
-    bundle.sigma_px[static_cast<std::size_t>(side)] = std::max(1e-3, lengths[lengths.size() / 2] / kRayleighMedian);
+    bundle.sigma_px[static_cast<std::size_t>(side)] = std::max(1e-3, median(lengths) / kRayleighMedian);
   }
 }
 

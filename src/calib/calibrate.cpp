@@ -13,6 +13,7 @@
 #include "calib/find_board.h"
 #include "calib/judge_bundle.h"
 #include "calib/start_bundle.h"
+#include "core/statistics.h"
 
 namespace duo {
 namespace {
@@ -254,10 +255,8 @@ Result<Bundle> Calibrator::State::fit(std::vector<const BoardView*>& used, std::
     // or was bent, or misread.
     std::vector<double> rms;
     for (const BoardPose& pose : bundle.poses) rms.push_back(std::max(pose.rms_px[0], pose.rms_px[1]));
-    std::vector<double> sorted = rms;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
     const auto worst = std::max_element(rms.begin(), rms.end()) - rms.begin();
-    if (rms[static_cast<std::size_t>(worst)] < std::max(kPoorView_px, kPoorView * sorted[sorted.size() / 2])) break;
+    if (rms[static_cast<std::size_t>(worst)] < std::max(kPoorView_px, kPoorView * median(std::vector(rms)))) break;
     rejected.push_back(used[static_cast<std::size_t>(worst)]->name);
     used.erase(used.begin() + worst), bundle.poses.erase(bundle.poses.begin() + worst);
     if (used.size() < kMinViews || 3 * rejected.size() > all)

@@ -60,7 +60,7 @@ TEST_P(Clips, JointsLieOnOneRow) {
       worst_row_px = std::max(worst_row_px, std::abs(a->y - b->y));
       const Vec3 p_in_left_m = {joint["xyz"][0], joint["xyz"][1], joint["xyz"][2]};
       const Vec3 p_in_rig_m = geometry.rig_from_left * p_in_left_m;
-      worst_place_m = std::max(worst_place_m, norm(point_of(geometry, a->x, a->y, a->x - b->x) - p_in_rig_m));
+      worst_place_m = std::max(worst_place_m, norm(geometry.triangulate(*a, a->x - b->x) - p_in_rig_m));
       if (well_inside(raw_left, rig->left.size) && well_inside(raw_right, rig->right.size)) {
         EXPECT_TRUE(inside(r->left, *a) && inside(r->right, *b)) << a->x << " " << a->y << " " << b->x;
       }

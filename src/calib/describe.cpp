@@ -19,7 +19,7 @@ Result<RigDescription> describe_rig(const Rig& rig, double near_m) {
   if (!(near_m > 0)) return rig_error("", "the nearest depth is {} m; it must be above zero", near_m);
   DUO_TRY_ASSIGN(const Rectified geometry, rectified_geometry(rig, ""));
   RigDescription out{.rectified = geometry.size, .near_m = near_m};
-  out.max_disparity = static_cast<int>(std::ceil(geometry.focal_px * geometry.baseline_m / near_m)) + 1;
+  out.max_disparity = static_cast<int>(std::ceil(geometry.disparity_px(near_m))) + 1;
   const std::array<double, 3> depths_m = {1, 2, 3};
   for (std::size_t i = 0; i < depths_m.size(); ++i)
     out.step_m[i] = kDisparityStep_px * depths_m[i] * depths_m[i] / (geometry.focal_px * geometry.baseline_m);

@@ -7,6 +7,8 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/statistics.h"
+
 namespace duo {
 namespace {
 
@@ -135,9 +137,7 @@ double edge_spread_px(const cv::Mat& gray, const Board& board, const FoundBoard&
       spreads.push_back(spread_between_px(gray, a, *b, ends_black ? on_white : on_black, ends_black ? on_black : on_white));
     }
     if (spreads.empty()) continue;
-    const auto middle = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 2);
-    std::nth_element(spreads.begin(), middle, spreads.end());
-    widest_px = std::max(widest_px, *middle);
+    widest_px = std::max(widest_px, median(spreads));
   }
   return widest_px;
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "calib/normal_equations.h"
+#include "core/statistics.h"
 
 namespace duo {
 namespace {
@@ -49,12 +50,6 @@ std::pair<Parts, Parts> slopes(const Parts& parts, Vec2 at) {
     of_y[i] = (b.y - a.y) / (2 * kStep);
   }
   return {of_x, of_y};
-}
-
-double quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 /// How far out a lens keeps the order of its circles, with room.

@@ -1,7 +1,8 @@
-// How OpenCV rectifies a rig: what programs that read OpenCV's and ROS's files expect to find in them.
+// A rig and its rectification as OpenCV writes them: what programs that read OpenCV's and ROS's files expect.
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "duoptic/rig.h"
 
@@ -16,6 +17,11 @@ struct OpencvRectified {
 
 /// stereoRectify with CALIB_ZERO_DISPARITY and alpha 0: pictures of the raw size without black borders.
 OpencvRectified opencv_rectified(const Rig& rig);
+/// Our own rectification in the same words.
+OpencvRectified opencv_rectified(const Rectified& rectified);
+
+/// A file of OpenCV's FileStorage.
+std::string opencv_text(const Rig& rig, const OpencvRectified& rectified, bool yaml);
 
 /// Whether k4 k5 k6 are used.
 inline bool has_denominator(const Camera& camera) {

@@ -110,7 +110,7 @@ std::optional<Vec2> rectified_from_raw(const Rectified& geometry, const Mat3& ri
   if (!ray) return {};
   const Vec3 p = rig_from_camera * *ray;
   if (p.z <= 0) return {};
-  return Vec2{geometry.focal_px * p.x / p.z + geometry.cx_px, geometry.focal_px * p.y / p.z + geometry.cy_px};
+  return geometry.project(p);
 }
 
 std::optional<Vec2> raw_from_rectified(const Rectified& geometry, const Mat3& rig_from_camera, const Lens& lens,

@@ -32,12 +32,6 @@ Result<Rectification> make_rectification(const Rig& rig, const std::string& name
 /// Makes pixel (y, x) of a map show a place of a raw picture of this size; outside of it, nothing.
 void put_place(ResampleMap& map, int y, int x, Vec2 raw_px, Size raw);
 
-/// The point in the rig frame (metres) that a rectified left pixel with disparity d > 0 shows.
-inline Vec3 point_of(const Rectified& geometry, double x_px, double y_px, double d_px) {
-  const double z_m = geometry.focal_px * geometry.baseline_m / d_px;
-  return {(x_px - geometry.cx_px) * z_m / geometry.focal_px, (y_px - geometry.cy_px) * z_m / geometry.focal_px, z_m};
-}
-
 /// Where a raw pixel lies on the canvas; `rig_from_camera` says which camera. None where the lens sees no ray, or behind.
 std::optional<Vec2> rectified_from_raw(const Rectified& geometry, const Mat3& rig_from_camera, const Lens& lens, Vec2 raw_px);
 

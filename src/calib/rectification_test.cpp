@@ -59,7 +59,7 @@ TEST(Rectification, IdealRigIsIdentity) {
 // By hand: x 100 px right of the centre at d = 25 px: z = 500 * 0.1 / 25 = 2 m, x = 100 / 500 * 2 = 0.4 m.
 TEST(Rectification, PointOfADisparity) {
   const Rectified geometry = rectified(ideal_rig()).geometry;
-  const Vec3 p = point_of(geometry, 420, 190, 25);
+  const Vec3 p = geometry.triangulate({420, 190}, 25);
   EXPECT_NEAR(p.x, 0.4, 1e-9);
   EXPECT_NEAR(p.y, -0.2, 1e-9);
   EXPECT_NEAR(p.z, 2, 1e-9);
@@ -98,7 +98,7 @@ void expect_rows_align(const Rig& rig) {
     ASSERT_TRUE(kept(r.left, *a)) << a->x << " " << a->y;
     ASSERT_TRUE(kept(r.right, *b)) << b->x << " " << b->y;
     const Vec3 p_in_rig_m = r.geometry.rig_from_left * p_in_left_m;
-    const Vec3 found_m = point_of(r.geometry, a->x, a->y, a->x - b->x);
+    const Vec3 found_m = r.geometry.triangulate(*a, a->x - b->x);
     EXPECT_NEAR(norm(found_m - p_in_rig_m), 0, 1e-6 * dot(p_in_rig_m, p_in_rig_m));
   }
   EXPECT_GT(seen, 2000);

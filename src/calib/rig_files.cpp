@@ -3,9 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <opencv2/core/persistence.hpp>
 #include <optional>
-#include <span>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -23,34 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_yaml(const fs::path& path) { return path.extension() == ".yml" || path.extension() == ".yaml"; }
-
-// --- OpenCV ---------------------------------------------------------------------------------------------------------------
-
-void put(cv::FileStorage& storage, const char* key, int rows, std::span<const double> numbers) {
-  storage << key << cv::Mat(rows, static_cast<int>(numbers.size()) / rows, CV_64F, const_cast<double*>(numbers.data()));
-}
-
-void put(cv::FileStorage& storage, const char* matrix_key, const char* distortion_key, const Camera& c) {
-  put(storage, matrix_key, 3, std::array{c.fx_px, 0.0, c.cx_px, 0.0, c.fy_px, c.cy_px, 0.0, 0.0, 1.0});
-  put(storage, distortion_key, 1, std::span(c.distortion).first(has_denominator(c) ? 8 : 5));
-}
-
-std::string opencv_text(const Rig& rig, const fs::path& path) {
-  const OpencvRectified rectified = opencv_rectified(rig);
-  const Vec3 t = rig.right_from_left.t_m;
-  cv::FileStorage storage(is_yaml(path) ? ".yml" : ".json", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
-  storage << "image_width" << rig.left.size.width << "image_height" << rig.left.size.height;
-  put(storage, "M1", "D1", rig.left);
-  put(storage, "M2", "D2", rig.right);
-  put(storage, "R", 3, rig.right_from_left.rotation.m);
-  put(storage, "T", 3, std::array{t.x, t.y, t.z});
-  put(storage, "R1", 3, rectified.r1.m);
-  put(storage, "R2", 3, rectified.r2.m);
-  put(storage, "P1", 3, rectified.p1);
-  put(storage, "P2", 3, rectified.p2);
-  put(storage, "Q", 4, rectified.q);
-  return storage.releaseAndGetString();
-}
 
 // --- ROS ------------------------------------------------------------------------------------------------------------------
 
@@ -185,7 +155,7 @@ Result<RigExport> export_rig(const Rig& rig, RigFormat format, const fs::path& p
       case RigFormat::kOpencv:
         if (!is_yaml(path) && path.extension() != ".json")
           return wrong_ending(path, "OpenCV's files end with .yml, .yaml or .json");
-        DUO_TRY(write_file(path, opencv_text(rig, path)));
+        DUO_TRY(write_file(path, opencv_text(rig, opencv_rectified(rig), is_yaml(path))));
         return RigExport{{path}};
       case RigFormat::kRos:
         return write_ros(rig, path);

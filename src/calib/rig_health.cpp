@@ -6,6 +6,7 @@
 
 #include "calib/rig_formats.h"
 #include "calib/scene_pose.h"
+#include "core/statistics.h"
 
 namespace duo {
 namespace {
@@ -13,12 +14,6 @@ namespace {
 constexpr double kLeastCovered = 0.2;
 
 Error scene_error(const std::string& what) { return {ErrorCode::kBadInput, "cannot judge the rig by this scene: " + what}; }
-
-double quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 /// Differences of rows, signed, by the part of the left picture that they lie in.
 double systematic_row_px(const std::vector<SceneMatch>& matches, const std::vector<double>& errors, Size size) {
@@ -32,7 +27,7 @@ double systematic_row_px(const std::vector<SceneMatch>& matches, const std::vect
   int count = 0;
   for (const auto& part : parts) {
     if (part.size() < kFewest) continue;
-    const double median = quantile(part, 0.5);
+    const double median = quantile(std::vector(part), 0.5);
     sum += median * median;
     ++count;
   }

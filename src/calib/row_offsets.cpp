@@ -6,6 +6,7 @@
 
 #include "calib/lens_left_over.h"
 #include "calib/normal_equations.h"
+#include "core/statistics.h"
 
 namespace duo {
 namespace {
@@ -29,12 +30,6 @@ Terms terms_at(double x_px, double y_px, Size size) {
   return out;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The differences that lie within `reach_px` of where they lie closest together: wrong matches lie anywhere.
 std::vector<RowDifference> densest(std::vector<RowDifference> all, double reach_px) {
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.px < b.px; });
@@ -53,7 +48,7 @@ std::vector<double> off_px(const std::vector<RowDifference>& all, const Terms& f
 }
 
 /// The scale of what a good match may be off: robust, but not below what matches reach.
-double scale_px(const std::vector<double>& off) { return std::max(1.5 * median(off), 0.1); }
+double scale_px(std::vector<double> off) { return std::max(1.5 * median(off), 0.1); }
 
 Terms fit_terms(const std::vector<RowDifference>& all, int width_px) {
   constexpr int kRounds = 12;
@@ -93,7 +88,7 @@ bool explains_as_well(const std::vector<double>& errors_px, const std::vector<do
   };
   const auto a = close(errors_px), b = close(others_px);
   if (a.empty() || 100 * a.size() < 99 * b.size()) return false;
-  return b.empty() || median(a) <= 1.25 * std::max(median(b), kFinest_px);
+  return b.empty() || median(std::vector(a)) <= 1.25 * std::max(median(std::vector(b)), kFinest_px);
 }
 
 /// The lens in place of the terms, and what rows are off by it.

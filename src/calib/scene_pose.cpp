@@ -7,6 +7,7 @@
 
 #include "calib/normal_equations.h"
 #include "calib/rig_formats.h"
+#include "core/statistics.h"
 
 namespace duo {
 namespace {
@@ -124,9 +125,7 @@ double robust_sigma_px(const std::vector<double>& errors) {
   for (const double e : errors)
     if (std::isfinite(e)) sizes.push_back(std::abs(e));
   if (sizes.empty()) return kLeast_px;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return std::max(kLeast_px, 1.4826 * *middle);
+  return std::max(kLeast_px, 1.4826 * median(sizes));
 }
 
 double tukey_weight(double error_px, double sigma_px) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
+#include "core/statistics.h"
+
 namespace duo {
 namespace {
 
@@ -65,10 +67,6 @@ Result<BundleStart> start_bundle(const std::vector<const BoardView*>& views, con
         turned.push_back(angle_rad(candidate.rotation * transposed(other.rotation)));
         off.push_back(turned.back() + norm(candidate.t_m - other.t_m) / std::max(1e-9, norm(candidate.t_m)));
       }
-      const auto median = [](std::vector<double>& v) {
-        std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-        return v[v.size() / 2];
-      };
       if (const double agreed = median(off); best < 0 || agreed < best) {
         best = agreed;
         out.bundle.right_from_left = candidate;

@@ -1,4 +1,4 @@
-// Parts of a picture: what the tracker asks the observation stages to look at.
+// Pixels and parts of a picture.
 #pragma once
 
 #include <algorithm>
@@ -9,6 +9,12 @@
 #include "duoptic/window.h"
 
 namespace duo {
+
+struct Pixel {
+  std::int32_t y = -1, x = -1;  // -1: none
+  bool found() const { return y >= 0; }
+  friend bool operator==(const Pixel&, const Pixel&) = default;
+};
 
 /// Pixels whose centre lies at most `radius_px` from that of (x, y); the whole plane where radius_px < 0.
 ///
@@ -46,14 +52,6 @@ struct Area {
     while (x + 8 <= end && !any_marked(row + x)) x += 8;
     while (x < end && (row[x] & bits) == 0) ++x;
     return x;
-  }
-  /// The last marked column of row y in [begin, end), or begin - 1.
-  int last_marked(int y, int begin, int end) const {
-    if (marks.empty()) return end - 1;
-    const std::uint8_t* row = marks.row(y);
-    while (end - 8 >= begin && !any_marked(row + end - 8)) end -= 8;
-    while (end > begin && (row[end - 1] & bits) == 0) --end;
-    return end - 1;
   }
 
   /// The smallest window that holds all of it in a picture of this size.

@@ -1,4 +1,4 @@
-// What a recording keeps of a picture beside its packet: Matroska's own times are whole milliseconds.
+// Capture time and number of each picture in a recording: Matroska's own times are whole milliseconds.
 #pragma once
 
 #include <cstdint>

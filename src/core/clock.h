@@ -18,7 +18,7 @@ inline std::int64_t clock_ns(clockid_t id) {
 inline std::int64_t wall_ns() { return clock_ns(CLOCK_MONOTONIC); }
 inline std::int64_t cpu_ns() { return clock_ns(CLOCK_PROCESS_CPUTIME_ID); }
 
-/// Adds to the time of a stage; stages that find no place any more are left out.
+/// Adds to the time of a stage; further stages than the array holds are left out.
 inline void add_time(std::span<StageTime> times, const char* stage, std::int64_t wall_ns, std::int64_t cpu_ns) {
   for (StageTime& t : times) {
     if (t.wall_ns != 0 && std::strcmp(t.stage, stage) != 0) continue;

@@ -1,4 +1,4 @@
-// Whole files: read with a limit, written so that a reader never sees a half.
+// Whole files: read with a limit, written atomically.
 #pragma once
 
 #include <sys/types.h>

@@ -1,4 +1,4 @@
-// How many of its threads a pool is worth using while other programs need the cores, too.
+// Chooses how many threads of a pool to use while other programs load the CPU.
 #pragma once
 
 #include <algorithm>
@@ -6,10 +6,10 @@
 
 namespace duo {
 
-/// Threads that wait for each other get on only while each of them has a core. Where other programs take turns on the cores,
-/// most of a frame is waiting, and fewer threads are faster. So where frames take twice as long as they would if no thread
-/// waited, half of them are tried, and kept if that is faster; after a while more are tried again, less and less often where
-/// that does not pay.
+/// Threads that share a frame wait for each other at every stage. While other programs take their cores, most of a frame is
+/// waiting, and fewer threads are faster. When frames take twice as long as they would without waiting, half of the threads are
+/// tried for some frames and kept if the frames get faster. Later more threads are tried again; each try that does not pay
+/// doubles the time to the next one.
 class Governor {
  public:
   explicit Governor(int threads) : all_(threads), now_(threads) {}
@@ -17,13 +17,13 @@ class Governor {
   /// Of the next frame.
   int threads() const { return now_; }
 
-  /// A frame was made by threads() threads: how long that took, and how long they computed, all together.
+  /// Reports a frame: the wall time it took with threads() threads, and the CPU time of all of them together.
   void made(std::int64_t wall_ns, std::int64_t cpu_ns) {
     if (all_ == 1 || wall_ns <= 0 || cpu_ns <= 0) return;
     const double wall = static_cast<double>(wall_ns), waiting = wall * now_ / static_cast<double>(cpu_ns);
     if (tried_ > 0) return judge(wall, waiting);
     wall_ += (wall - wall_) / (wall_ > 0 ? kSmooth : 1);
-    waiting_ += (std::min(waiting, 1.5 * most_waiting_) - waiting_) / kSmooth;  // nor is one long wait
+    waiting_ += (std::min(waiting, 1.5 * most_waiting_) - waiting_) / kSmooth;  // clamped: one long stall cannot cause a change by itself
     rest_ -= waiting < kQuiet ? kSooner : 1;
     if (now_ > 1 && waiting_ > most_waiting_)
       try_out(now_ / 2);
@@ -32,9 +32,9 @@ class Governor {
   }
 
  private:
-  static constexpr double kSmooth = 8;       // frames: a moment of others is not enough
-  static constexpr double kMostWaiting = 2;  // times as long as if nobody waited
-  static constexpr double kQuiet = 1.1;      // where threads have their cores to themselves
+  static constexpr double kSmooth = 8;       // frames: a short load of other programs is no reason to change
+  static constexpr double kMostWaiting = 2;  // wall time over wall time without waiting
+  static constexpr double kQuiet = 1.1;      // the same while no other program loads the CPU
   static constexpr int kTried = 3, kSooner = 4, kFirstRest = 16, kLongestRest = 256;  // frames
 
   void try_out(int threads) {
@@ -52,7 +52,7 @@ class Governor {
       if (more)
         next_rest_ = std::min(2 * next_rest_, kLongestRest);
       else
-        most_waiting_ = std::max(kMostWaiting, 1.5 * waiting_);  // they wait by nature
+        most_waiting_ = std::max(kMostWaiting, 1.5 * waiting_);  // waiting that fewer threads do not cure
       now_ = before_;
       tried_ = 0;
       rest_ = next_rest_;

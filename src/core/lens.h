@@ -7,11 +7,6 @@
 
 namespace duo {
 
-struct Vec2 {
-  double x = 0, y = 0;
-  friend bool operator==(const Vec2&, const Vec2&) = default;
-};
-
 /// A camera's distortion in both directions.
 ///
 /// Far from the axis a distortion polynomial can turn back, so that two rays meet in one pixel; rays from the first turning

@@ -25,7 +25,7 @@ struct Parameter {
 
 using Overrides = std::vector<std::pair<std::string, double>>;
 
-/// Sets the named members of `params`; `whose` stands in messages.
+/// Sets the named members of `params`; `whose` names their owner in messages.
 ///
 /// Errors  unknown name, value out of range or not whole: with what is known or allowed
 template <class Params>

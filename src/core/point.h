@@ -12,8 +12,7 @@ namespace duo {
 inline std::optional<Vec3> point_at(View<const std::uint16_t> d_q4, const Rectified& rectified, int y, int x) {
   const std::uint16_t d = d_q4.at(y, x);
   if (d == Disparity::kNone || d == 0) return {};
-  const double metres_per_px = rectified.baseline_m * 16 / d;  // z / focal
-  return Vec3{(x - rectified.cx_px) * metres_per_px, (y - rectified.cy_px) * metres_per_px, rectified.focal_px * metres_per_px};
+  return rectified.triangulate({static_cast<double>(x), static_cast<double>(y)}, d / 16.0);
 }
 
 }  // namespace duo

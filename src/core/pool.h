@@ -21,13 +21,13 @@ class Pool {
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
-  /// Those in use, and those there are.
+  /// Threads in use, and threads that exist.
   int threads() const { return in_use_; }
   int most() const { return static_cast<int>(workers_.size()) + 1; }
-  /// Lets the others rest, 1 .. most(), until called again. Parts are fewer then, never more.
+  /// Uses this many threads, 1 .. most(), until called again. Jobs are split into fewer parts then, never more.
   void use(int threads);
 
-  /// Of all work since the last call: how long it took, and how long its threads computed, all together.
+  /// Wall time of all jobs since the last call, and CPU time of all threads together in them.
   struct Effort {
     std::int64_t wall_ns = 0, cpu_ns = 0;
   };
@@ -66,7 +66,7 @@ class Pool {
   void* context_ = nullptr;
   std::int64_t wall_ns_ = 0;
   std::atomic<std::int64_t> cpu_ns_ = 0;
-  std::vector<std::jthread> workers_;  // last: they use all of the above
+  std::vector<std::jthread> workers_;  // last member: its threads use all others
 };
 
 }  // namespace duo

@@ -4,5 +4,5 @@ target_sources(duoptic PRIVATE ${dir}/keep_windows.cpp ${dir}/prepared.cpp ${dir
   ${dir}/simd_frames.cpp ${dir}/vulkan_choice.cpp)
 target_compile_definitions(duoptic PRIVATE DUO_VULKAN=$<BOOL:${DUO_VULKAN}>)
 if(DUO_VULKAN)
-  target_sources(duoptic PRIVATE ${dir}/vulkan_engine.cpp ${dir}/vulkan_frames.cpp ${dir}/vulkan_observers.cpp)
+  target_sources(duoptic PRIVATE ${dir}/vulkan_engine.cpp ${dir}/vulkan_frames.cpp)
 endif()

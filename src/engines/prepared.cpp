@@ -12,22 +12,6 @@ constexpr Denoise kRawDenoise = Denoise::kGaussian;
 
 Error bad(std::string what) { return {ErrorCode::kBadInput, std::move(what)}; }
 
-Result<std::variant<PyramidParams, SgmParams>> matcher_params(const Setup& setup) {
-  std::variant<PyramidParams, SgmParams> out;
-  if (setup.matcher == "sgm") {
-    if (setup.max_disparity > SgmParams::kMaxDisparity)
-      return bad(fmt::format(
-          "prepare the engine: matcher sgm searches at most {} disparities, not {}; lower it, or choose matcher pyramid",
-          SgmParams::kMaxDisparity, setup.max_disparity));
-    DUO_TRY_ASSIGN(out, sgm_params(setup.preset, setup.parameters));
-  } else if (setup.matcher == "pyramid") {
-    DUO_TRY_ASSIGN(out, pyramid_params(setup.preset, setup.parameters));
-  } else {
-    return bad(fmt::format("prepare the engine: no matcher is called \"{}\"; choose one of: sgm, pyramid", setup.matcher));
-  }
-  return out;
-}
-
 }  // namespace
 
 Result<Prepared> prepare_setup(const Setup& setup) {
@@ -46,16 +30,12 @@ Result<Prepared> prepare_setup(const Setup& setup) {
   if (setup.wants.depth && !setup.rig)
     return bad(
         "prepare the engine: depth in metres needs a rig (focal length and baseline); give one, or take disparity alone");
-  DUO_TRY_ASSIGN(out.matcher, matcher_params(setup));
-  if (setup.wants.confidence && !std::holds_alternative<SgmParams>(out.matcher))
-    return bad(fmt::format(
-        "prepare the engine: matcher {} does not say how sure it is; choose matcher sgm, or do not ask for confidence",
-        setup.matcher));
+  DUO_TRY_ASSIGN(out.matcher, Matchers::choose(setup));
 
   const Denoise denoise = setup.denoise != Denoise::kAuto ? setup.denoise : (setup.rig ? kRawDenoise : Denoise::kNone);
   out.median = denoise == Denoise::kMedian || denoise == Denoise::kBoth;
   out.gaussian = denoise == Denoise::kGaussian || denoise == Denoise::kBoth;
-  out.color = setup.wants.color || setup.wants.observer;
+  out.color = setup.wants.color || setup.wants.on_device;
 
   out.size = setup.size;
   if (setup.rig) {

@@ -2,13 +2,10 @@
 #pragma once
 
 #include <optional>
-#include <variant>
 
 #include "calib/rectification.h"
-#include "core/match_setup.h"
 #include "duoptic/engine.h"
-#include "matchers/pyramid/pyramid_params.h"
-#include "matchers/sgm/sgm_params.h"
+#include "matchers/matchers.h"
 
 namespace duo {
 
@@ -19,7 +16,7 @@ struct Prepared {
   std::optional<Rectification> rectification;
   std::optional<Rectified> geometry;
   Size size;  // of the rectified pictures
-  std::variant<PyramidParams, SgmParams> matcher;
+  Matchers::Choice matcher;
 };
 
 /// Checks the setup and computes the geometry.

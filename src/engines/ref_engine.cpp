@@ -9,8 +9,6 @@
 #include "engines/engines.h"
 #include "engines/keep_windows.h"
 #include "engines/prepared.h"
-#include "matchers/pyramid/pyramid.h"
-#include "matchers/sgm/sgm.h"
 #include "stages/depth/depth.h"
 #include "stages/fill/fill.h"
 #include "stages/gaussian/gaussian.h"
@@ -30,10 +28,7 @@ class RefEngine final : public Engine {
   Result<void> prepare(const Setup& setup) override {
     DUO_TRY_ASSIGN(prepared_, prepare_setup(setup));
     for (Frame& frame : frames_) frame = make_frame(prepared_);
-    if (const auto* pyramid = std::get_if<PyramidParams>(&prepared_.matcher))
-      matcher_.emplace<ref::Pyramid>(*pyramid, match_setup(prepared_));
-    else
-      matcher_.emplace<ref::Sgm>(std::get<SgmParams>(prepared_.matcher), match_setup(prepared_));
+    Matchers::make(prepared_.matcher, match_setup(prepared_), matcher_);
     if (setup.fill) {
       unsmoothed_ = Image<std::uint16_t>(prepared_.size);
     }
@@ -45,7 +40,7 @@ class RefEngine final : public Engine {
   void look_at(std::span<const Window> windows) override { windows_.assign(windows.begin(), windows.end()); }
 
   void submit(const Pair& pair) override {
-    DUO_CHECK(matcher_.index() != 0);
+    DUO_CHECK(matcher_.has_value());
     DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
     const Setup& setup = prepared_.setup;
     current_ ^= 1;
@@ -61,10 +56,7 @@ class RefEngine final : public Engine {
 
     Disparity& disparity = frame.disparity;
     const GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside};
-    if (auto* pyramid = std::get_if<ref::Pyramid>(&matcher_))
-      pyramid->match(gray, disparity.d_q4, timer_);
-    else
-      std::get<ref::Sgm>(matcher_).match(gray, {disparity.d_q4, frame.confidence}, timer_);
+    std::visit([&](auto& matcher) { matcher.match(gray, {disparity.d_q4, frame.confidence}, timer_); }, *matcher_);
     ref::mark_measured(disparity.d_q4, disparity.origin);
     if (setup.fill) fill(frame);
     keep_windows(windows_, frame);
@@ -115,7 +107,7 @@ class RefEngine final : public Engine {
 
   Pool pool_{1};  // colour for display is resampled by the same code in every engine
   Prepared prepared_;
-  std::variant<std::monostate, ref::Pyramid, ref::Sgm> matcher_;
+  Matchers::Ref matcher_;
   std::vector<Window> windows_;
   std::array<Frame, 2> frames_;  // the last one stays as it is while the next is made
   unsigned current_ = 0;

@@ -17,10 +17,7 @@ namespace duo {
 
 SimdFrames::SimdFrames(const Prepared& prepared, int threads) : prepared_(prepared), pool_(threads), governor_(pool_.most()) {
   for (Frame& frame : frames_) frame = make_frame(prepared);
-  if (const auto* pyramid = std::get_if<PyramidParams>(&prepared.matcher))
-    matcher_.emplace<simd::Pyramid>(pool_, *pyramid, match_setup(prepared));
-  else
-    matcher_.emplace<simd::Sgm>(pool_, std::get<SgmParams>(prepared.matcher), match_setup(prepared));
+  Matchers::make(pool_, prepared.matcher, match_setup(prepared), matcher_);
   if (prepared.setup.fill) {
     unsmoothed_ = Image<std::uint16_t>(prepared.size);
     smooth_scratch_.emplace(prepared.size);
@@ -52,10 +49,7 @@ const Frame& SimdFrames::make(const Pair& pair, std::span<const Window> windows)
   const RowBand matched = setup.fill ? shown.grown(WeightedMedian::kRadius, height) : shown;
   Disparity& disparity = frame.disparity;
   const GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside};
-  if (auto* pyramid = std::get_if<simd::Pyramid>(&matcher_))
-    pyramid->match(gray, disparity.d_q4, timer_);
-  else
-    std::get<simd::Sgm>(matcher_).match(gray, {disparity.d_q4, frame.confidence}, timer_, matched);
+  std::visit([&](auto& matcher) { matcher.match(gray, {disparity.d_q4, frame.confidence}, timer_, matched); }, *matcher_);
   simd::mark_measured(pool_, disparity.d_q4, disparity.origin);
   if (setup.fill) fill(frame, shown);
   keep_windows(windows, frame);

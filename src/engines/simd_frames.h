@@ -4,15 +4,12 @@
 #include <array>
 #include <optional>
 #include <span>
-#include <variant>
 #include <vector>
 
 #include "core/clock.h"
 #include "core/governor.h"
 #include "core/pool.h"
 #include "engines/prepared.h"
-#include "matchers/pyramid/pyramid.h"
-#include "matchers/sgm/sgm.h"
 #include "stages/weighted_median/weighted_median.h"
 
 namespace duo {
@@ -38,7 +35,7 @@ class SimdFrames {
   const Prepared& prepared_;
   Pool pool_;
   Governor governor_;
-  std::variant<std::monostate, simd::Pyramid, simd::Sgm> matcher_;
+  Matchers::Simd matcher_;
   std::array<Frame, 2> frames_;
   unsigned current_ = 0;
   std::optional<simd::WeightedMedianScratch> smooth_scratch_;

@@ -11,6 +11,7 @@
 #include "engines/engines.h"
 #include "engines/keep_windows.h"
 #include "engines/vulkan_frames.h"
+#include "vulkan/frame_on_device.h"
 
 namespace duo {
 namespace {
@@ -28,11 +29,11 @@ class VulkanEngine final : public Engine {
   Result<void> prepare(const Setup& setup) override {
     DUO_TRY_ASSIGN(Prepared checked, prepare_setup(setup));
     auto prepared = std::make_unique<Prepared>(std::move(checked));
-    const std::lock_guard lock(observing_);
-    unseen_ = false;
+    const std::lock_guard lock(using_);
+    failed_ = false;
     work_.reset();  // first: it speaks of the old setup, and there need not be memory for both
     if (device_ != nullptr) {
-      auto work = vk::Frames::make(*device_, *prepared);
+      auto work = vk::Frames::make(device_, *prepared);
       if (work) {
         work_ = std::move(*work);
         cpu_.reset();
@@ -45,7 +46,6 @@ class VulkanEngine final : public Engine {
     slots_ = work_ != nullptr ? work_->slots() : vk::Frames::kInFlight;
     if (work_ == nullptr) return prepare_cpu();
     for (Frame& frame : frames_) frame = work_->make_frame();
-    if (work_->observers() != nullptr) clicked_ = make_frame(*prepared_);
     return {};
   }
 
@@ -57,7 +57,7 @@ class VulkanEngine final : public Engine {
     const int slot = (first_ + count_++) % slots_;
     pairs_[static_cast<std::size_t>(slot)] = &pair;
     windows_of_[static_cast<std::size_t>(slot)] = windows_;
-    if (unseen_) go_on_with_cpu(why_unseen_);
+    if (failed_) go_on_with_cpu(why_failed_);
     if (work_ == nullptr) return;
     if (const auto started = work_->submit(slot, pair); !started) go_on_with_cpu(started.error());
   }
@@ -77,7 +77,7 @@ class VulkanEngine final : public Engine {
         frame.t_ns = pair.left.t_ns;
         frame.skew_ns = pair.right.t_ns - pair.left.t_ns;
         keep_windows(windows_of_[static_cast<std::size_t>(slot)], frame);
-        if (work_->observers() != nullptr) frame.observer = &observers_[static_cast<std::size_t>(slot)];
+        frame.on_device = work_->on_device() != nullptr ? &on_device_[static_cast<std::size_t>(slot)] : nullptr;
         return frame;
       }
       go_on_with_cpu(done.error());
@@ -88,17 +88,20 @@ class VulkanEngine final : public Engine {
   }
 
  private:
-  /// Of the frame in one slot.
-  class SlotObserver final : public Observer {
+  /// The frame in one slot. What goes wrong in the tracker's thread is left to the engine's: only that one gives the device up.
+  class Slot final : public vk::FrameOnDevice {
    public:
-    SlotObserver(VulkanEngine& engine, int slot) : engine_(engine), slot_(slot) {}
-    bool observe(const Expectation& expected, Observation& seen) override {
-      return engine_.look([&](vk::Observers& observers) { return observers.observe(slot_, expected, seen); }).has_value();
-    }
-    Result<const Frame*> maps() override {
-      Frame& frame = engine_.clicked_;
-      DUO_TRY(engine_.look([&](vk::Observers& observers) { return observers.fetch(slot_, frame); }));
-      return &frame;
+    Slot(VulkanEngine& engine, int slot) : engine_(engine), slot_(slot) {}
+    Result<void> use(const Work& work) override {
+      const std::lock_guard lock(engine_.using_);
+      if (engine_.work_ == nullptr || engine_.failed_)
+        return Error{ErrorCode::kDeviceLost, "use a frame on its device: the device is lost; take the next frame"};
+      auto used = work(engine_.work_->on_device(), slot_);
+      if (!used) {
+        engine_.why_failed_ = used.error();
+        engine_.failed_ = true;
+      }
+      return used;
     }
 
    private:
@@ -106,20 +109,7 @@ class VulkanEngine final : public Engine {
     const int slot_;
   };
 
-  /// In the tracker's thread. What goes wrong is left to the engine's: only that one gives the device up.
-  Result<void> look(const auto& with) {
-    const std::lock_guard lock(observing_);
-    if (work_ == nullptr || unseen_)
-      return Error{ErrorCode::kDeviceLost, "look at a frame: its device is lost; take the next frame"};
-    auto looked = with(*work_->observers());
-    if (!looked) {
-      why_unseen_ = looked.error();
-      unseen_ = true;
-    }
-    return looked;
-  }
-
-  /// While nobody looks.
+  /// While nobody uses the device.
   void give_up(const Error& why) {
     event_ = fmt::format("{}; the CPU goes on in its place", why.what);
     work_.reset();
@@ -134,13 +124,13 @@ class VulkanEngine final : public Engine {
   }
 
   void go_on_with_cpu(const Error& why) {
-    const std::lock_guard lock(observing_);
+    const std::lock_guard lock(using_);
     give_up(why);
-    unseen_ = false;
+    failed_ = false;
     DUO_CHECK(prepare_cpu());  // its setup has been checked
   }
 
-  std::unique_ptr<vk::Device> device_;  // null once it was lost
+  std::shared_ptr<vk::Device> device_;  // null once it was lost; shared with who uses frames on it
   std::string device_name_ = device_->info().name;
   int threads_;
   std::unique_ptr<Prepared> prepared_ = std::make_unique<Prepared>();
@@ -153,11 +143,10 @@ class VulkanEngine final : public Engine {
   std::array<std::vector<Window>, vk::Frames::kSlots> windows_of_;
   int first_ = 0, count_ = 0, slots_ = vk::Frames::kInFlight;
   std::string event_;
-  std::mutex observing_;              // held while someone looks, and while work_ changes
-  std::atomic<bool> unseen_ = false;  // looking failed: why_unseen_ says why, and stays as it is until this is taken back
-  Error why_unseen_;
-  Frame clicked_;  // what came down for a click
-  std::array<SlotObserver, vk::Frames::kSlots> observers_{{{*this, 0}, {*this, 1}, {*this, 2}, {*this, 3}}};
+  std::mutex using_;                  // held while someone uses a frame on the device, and while work_ changes
+  std::atomic<bool> failed_ = false;  // using one failed: why_failed_ says why, and stays as it is until this is taken back
+  Error why_failed_;
+  std::array<Slot, vk::Frames::kSlots> on_device_{{{*this, 0}, {*this, 1}, {*this, 2}, {*this, 3}}};
 };
 
 }  // namespace

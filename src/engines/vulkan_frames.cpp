@@ -6,8 +6,8 @@
 
 #include "core/check.h"
 #include "core/clock.h"
-#include "engines/vulkan_maps.h"
 #include "stages/fill/fill_params.h"
+#include "vulkan/maps.h"
 
 namespace duo::vk {
 namespace {
@@ -30,19 +30,26 @@ Image<std::uint8_t> inside_of(const ResampleMap& map, Size raw) {
 
 }  // namespace
 
-Result<std::unique_ptr<Frames>> Frames::make(Device& device, const Prepared& prepared) {
+Result<std::unique_ptr<Frames>> Frames::make(const std::shared_ptr<Device>& device, const Prepared& prepared) {
   if (prepared.size.width > kFillMaxWidth)
     return Error{ErrorCode::kUnsupported,
                  fmt::format("rectified pictures of {} columns: kernels take at most {}", prepared.size.width, kFillMaxWidth)};
-  std::unique_ptr<Frames> out(new Frames(device, prepared));
+  std::unique_ptr<Frames> out(new Frames(*device, prepared));
   DUO_TRY(out->make_kernels());
+  if (prepared.setup.wants.on_device && out->rectifies()) {
+    out->on_device_ = std::make_shared<FrameMaps>();
+    out->on_device_->device = device;
+    out->on_device_->size = prepared.size;
+    out->on_device_->time_stages = prepared.setup.time_stages;
+    out->on_device_->slots.resize(kSlots);
+  }
   DUO_TRY(out->make_maps());
-  out->slots_.resize(static_cast<std::size_t>(out->observers_ ? kSlots : kInFlight));
+  out->slots_.resize(static_cast<std::size_t>(out->on_device_ ? kSlots : kInFlight));
   for (Slot& slot : out->slots_) {
     DUO_TRY(out->make_slot(slot));
     DUO_TRY(out->record(slot));
   }
-  device.keep_pipelines();
+  device->keep_pipelines();
   return out;
 }
 
@@ -57,11 +64,11 @@ Result<void> Frames::make_kernels() {
   if (rectifies()) {
     DUO_TRY_ASSIGN(rectify_, Rectify::make(device_));
   }
-  if (const auto* pyramid = std::get_if<PyramidParams>(&prepared_.matcher)) {
-    DUO_TRY_ASSIGN(matcher_, Pyramid::make(device_, *pyramid, match_setup(prepared_)));
-  } else {
-    DUO_TRY_ASSIGN(matcher_, Sgm::make(device_, std::get<SgmParams>(prepared_.matcher), match_setup(prepared_)));
-  }
+  const auto make_matcher = [&]<class M>(const Chosen<M>& chosen) -> Result<void> {
+    DUO_TRY_ASSIGN(matcher_, M::Vulkan::make(device_, chosen.params, match_setup(prepared_)));
+    return {};
+  };
+  DUO_TRY(std::visit(make_matcher, prepared_.matcher));
   DUO_TRY_ASSIGN(fill_, Fill::make(device_));
   if (prepared_.setup.fill) {
     DUO_TRY_ASSIGN(weighted_median_, WeightedMedian::make(device_));
@@ -78,14 +85,16 @@ Result<void> Frames::make_maps() {
   DUO_TRY(make_view(views_[1], "right", maps != nullptr ? &maps->right : nullptr));
   const Size size = prepared_.size;
   const Wants& wants = prepared_.setup.wants;
-  if (wants.observer && rectifies()) {
-    DUO_TRY_ASSIGN(Observers observers, Observers::make(device_, size, kSlots, prepared_.setup.time_stages));
-    observers_.emplace(std::move(observers));
-  } else {
-    if (rectifies()) DUO_TRY(make_map<std::uint8_t>(device_, "rectified left", size, maps_.left));
-    DUO_TRY(make_map<std::uint16_t>(device_, "disparity", size, maps_.d_q4));
-    if (prepared_.color && rectifies()) DUO_TRY(make_map<Rgb8>(device_, "color", size, maps_.color));
-  }
+  const auto make = [&](FrameMaps::Slot& maps, bool color) -> Result<void> {
+    if (rectifies()) DUO_TRY(make_map<std::uint8_t>(device_, "rectified left", size, maps.left));
+    DUO_TRY(make_map<std::uint16_t>(device_, "disparity", size, maps.d_q4));
+    if (color) DUO_TRY(make_map<Rgb8>(device_, "color", size, maps.color));
+    return {};
+  };
+  if (on_device_)
+    for (FrameMaps::Slot& slot : on_device_->slots) DUO_TRY(make(slot, true));
+  else
+    DUO_TRY(make(maps_, prepared_.color && rectifies()));
   if (rectifies()) DUO_TRY(make_map<std::uint8_t>(device_, "rectified right", size, right_));
   DUO_TRY(make_map<std::uint8_t>(device_, "origin", size, origin_));
   if (prepared_.setup.fill) DUO_TRY(make_map<std::uint16_t>(device_, "unsmoothed disparity", size, unsmoothed_));
@@ -178,10 +187,8 @@ void Frames::record_match(Recorder& recorder, BufferView<std::uint8_t> left, Buf
     right_inside = whole<std::uint8_t>(views_[1].inside, prepared_.size);
   }
   if (prepared_.setup.wants.confidence) confidence = whole<std::uint8_t>(confidence_, prepared_.size);
-  if (const auto* pyramid = std::get_if<Pyramid>(&matcher_))
-    pyramid->record(recorder, {left, right, left_inside, right_inside}, d_q4);
-  else
-    std::get<Sgm>(matcher_).record(recorder, {left, right, left_inside, right_inside}, {d_q4, confidence});
+  const MatchInput pair{left, right, left_inside, right_inside};
+  std::visit([&](const auto& matcher) { matcher.record(recorder, pair, {d_q4, confidence}); }, *matcher_);
 }
 
 void Frames::record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right) {
@@ -207,7 +214,7 @@ void Frames::record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<
 
 void Frames::record_downloads(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right) {
   Recorder& recorder = *slot.recorder;
-  const Observers::Maps& maps = maps_of(slot);
+  const FrameMaps::Slot& maps = maps_of(slot);
   if (prepared_.color && rectifies()) {
     if (views_[0].columns == ResampleMap::Columns::kSoft)
       recorder.copy(views_[0].raw, maps.color, maps.color.bytes());
@@ -228,8 +235,8 @@ void Frames::record_downloads(Slot& slot, BufferView<std::uint8_t> left, BufferV
   down(rectifies() ? maps.color : views_[0].raw, slot.down.color);
 }
 
-const Observers::Maps& Frames::maps_of(const Slot& slot) const {
-  return observers_ ? observers_->maps(static_cast<int>(&slot - slots_.data())) : maps_;
+const FrameMaps::Slot& Frames::maps_of(const Slot& slot) const {
+  return on_device_ ? on_device_->slots[static_cast<std::size_t>(&slot - slots_.data())] : maps_;
 }
 
 Rectify::Map Frames::map_of(const ViewMaps& view) const {

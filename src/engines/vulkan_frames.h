@@ -4,12 +4,9 @@
 #include <array>
 #include <memory>
 #include <optional>
-#include <variant>
 
 #include "engines/prepared.h"
-#include "engines/vulkan_observers.h"
-#include "matchers/pyramid/pyramid_vk.h"
-#include "matchers/sgm/sgm_vk.h"
+#include "matchers/matchers_vk.h"
 #include "stages/depth/depth_vk.h"
 #include "stages/fill/fill_vk.h"
 #include "stages/gaussian/gaussian_vk.h"
@@ -17,21 +14,23 @@
 #include "stages/median/median_vk.h"
 #include "stages/rectify/rectify_vk.h"
 #include "stages/weighted_median/weighted_median_vk.h"
+#include "vulkan/frame_on_device.h"
 #include "vulkan/timer.h"
 
 namespace duo::vk {
 
 /// Kernels, memory and recordings for the pairs of one setup. The recordings of the slots use the same maps, one after the
-/// other; what the CPU writes and reads is each slot's own, and so is what is observed.
+/// other; what the CPU writes and reads is each slot's own, and so are the maps that stay on the device.
 ///
-/// Threads  one at a time; besides, one that observes
+/// Threads  one at a time; besides, one that uses the frames on the device
 class Frames {
  public:
   static constexpr int kInFlight = 2;
-  static constexpr int kSlots = kInFlight + 2;  // where frames are observed: two stay as they are while the next ones are made
+  static constexpr int kSlots =
+      kInFlight + 2;  // where maps stay on the device: those of two frames while the next ones are made
 
   /// Errors  the device lacks memory, or the driver refuses a kernel
-  static Result<std::unique_ptr<Frames>> make(Device& device, const Prepared& prepared);
+  static Result<std::unique_ptr<Frames>> make(const std::shared_ptr<Device>& device, const Prepared& prepared);
   Frames(const Frames&) = delete;
   Frames& operator=(const Frames&) = delete;
 
@@ -44,8 +43,8 @@ class Frames {
   ///
   /// Errors  those of Device::wait(): what the frame holds then means nothing
   Result<void> collect(int slot, Frame& frame);
-  /// Looks at the frame of a slot from its collect() to the next submit(); null where that was not wanted.
-  Observers* observers() { return observers_ ? &*observers_ : nullptr; }
+  /// Whose maps stay as they are from a slot's collect() to its next submit(); null where that was not wanted.
+  const std::shared_ptr<FrameMaps>& on_device() const { return on_device_; }
   /// A frame with memory for what is wanted, and with what is the same in all of them.
   Frame make_frame() const;
 
@@ -72,7 +71,7 @@ class Frames {
   Result<void> make_slot(Slot& slot);
   Result<void> record(Slot& slot);
   /// Where the maps of a slot's frame go.
-  const Observers::Maps& maps_of(const Slot& slot) const;
+  const FrameMaps::Slot& maps_of(const Slot& slot) const;
   std::array<BufferView<std::uint8_t>, 2> record_views(Slot& slot);
   void record_match(Recorder& recorder, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right,
                     BufferView<std::uint16_t> d_q4) const;
@@ -87,15 +86,15 @@ class Frames {
   Median median_;
   Gaussian gaussian_;
   Rectify rectify_;
-  std::variant<std::monostate, Pyramid, Sgm> matcher_;
+  VulkanMatcher matcher_;
   Fill fill_;
   WeightedMedian weighted_median_;
   std::optional<Depth> depth_;
   std::array<ViewMaps, 2> views_;
   Buffer right_;  // rectified
   Buffer unsmoothed_, origin_, confidence_, depth_mm_;
-  Observers::Maps maps_;  // of all slots, where nobody observes
-  std::optional<Observers> observers_;
+  FrameMaps::Slot maps_;  // of all slots, where the maps do not stay
+  std::shared_ptr<FrameMaps> on_device_;
   std::vector<Slot> slots_;
 };
 

@@ -32,7 +32,7 @@ std::vector<Tick> ticks(const DisparityRange& range, const Rectified* rectified)
     for (const double power : {1.0, 10.0, 100.0, 0.1, 0.01, 1000.0}) {
       const double value = leading * power;
       if (!rectified && value != std::floor(value)) continue;
-      const double d_px = rectified ? rectified->focal_px * rectified->baseline_m / value : value;
+      const double d_px = rectified ? rectified->disparity_px(value) : value;
       if (d_px >= range.far_px && d_px <= range.near_px)
         out.push_back({d_px, fmt::format("{:.3g} {}", value, rectified ? "m" : "px")});
     }

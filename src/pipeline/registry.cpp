@@ -6,10 +6,9 @@
 #include "duoptic/engine.h"
 #include "duoptic/tracker.h"
 #include "engines/engines.h"
-#include "matchers/pyramid/pyramid_params.h"
-#include "matchers/sgm/sgm_params.h"
+#include "matchers/matchers.h"
 #include "trackers/arm/arm_tracker.h"
-#include "trackers/arm/thesis_tracker.h"
+#include "trackers/thesis/thesis_tracker.h"
 
 namespace duo {
 
@@ -29,36 +28,10 @@ Result<std::unique_ptr<Engine>> make_engine(std::string_view name, int threads) 
                fmt::format("make the engine: no engine is called \"{}\"; choose one of: auto, vulkan, simd, ref", name)};
 }
 
-std::vector<std::string> matcher_names() { return {"sgm", "pyramid"}; }
-
-std::vector<std::string> matcher_presets(std::string_view matcher) {
-  if (matcher == "sgm") return {std::begin(kSgmPresets), std::end(kSgmPresets)};
-  if (matcher == "pyramid") return {std::begin(kPyramidPresets), std::end(kPyramidPresets)};
-  return {};
-}
-
-namespace {
-
-template <class Params>
-std::vector<ParameterInfo> described(const Params& params, std::span<const Parameter<Params>> table) {
-  std::vector<ParameterInfo> out;
-  for (const auto& p : table) out.push_back({p.name, p.unit, p.help, double(params.*p.member), double(p.min), double(p.max)});
-  return out;
-}
-
-}  // namespace
-
+std::vector<std::string> matcher_names() { return Matchers::names(); }
+std::vector<std::string> matcher_presets(std::string_view matcher) { return Matchers::presets(matcher); }
 Result<std::vector<ParameterInfo>> matcher_parameters(std::string_view matcher, std::string_view preset) {
-  if (matcher == "sgm") {
-    DUO_TRY_ASSIGN(const SgmParams params, sgm_params(preset, {}));
-    return described<SgmParams>(params, kSgmParameters);
-  }
-  if (matcher == "pyramid") {
-    DUO_TRY_ASSIGN(const PyramidParams params, pyramid_params(preset, {}));
-    return described<PyramidParams>(params, kPyramidParameters);
-  }
-  return Error{ErrorCode::kBadInput,
-               fmt::format("list parameters: no matcher is called \"{}\"; choose one of: sgm, pyramid", matcher)};
+  return Matchers::parameters(matcher, preset);
 }
 
 namespace {

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "calib/opencv_rectified.h"
 #include "calib/rectification.h"
 #include "core/file.h"
 #include "duoptic/sink.h"
@@ -112,37 +113,6 @@ class Staging {
   Descriptor parent_, inside_;
 };
 
-// --- The rig, in OpenCV's FileStorage format ----------------------------------------------------------------------------
-
-std::string matrix(const char* name, int rows, int cols, const std::vector<double>& data) {
-  std::string out = fmt::format("{}: !!opencv-matrix\n   rows: {}\n   cols: {}\n   dt: d\n   data: [ ", name, rows, cols);
-  for (std::size_t i = 0; i < data.size(); ++i)
-    out += fmt::format("{}{:.17e}", i == 0 ? "" : i % 3 == 0 ? ",\n       " : ", ", data[i]);
-  return out + " ]\n";
-}
-
-std::string calibration(const Rig& rig, const Rectified& rectified) {
-  std::string out =
-      fmt::format("%YAML:1.0\n---\nimage_width: {}\nimage_height: {}\n", rig.left.size.width, rig.left.size.height);
-  const auto camera = [&](const Camera& c, const std::string& side) {
-    out += matrix(("camera_matrix_" + side).c_str(), 3, 3, {c.fx_px, 0, c.cx_px, 0, c.fy_px, c.cy_px, 0, 0, 1});
-    out += matrix(("dist_coeffs_" + side).c_str(), 1, 5, {c.distortion.begin(), c.distortion.begin() + 5});
-  };
-  camera(rig.left, "left");
-  camera(rig.right, "right");
-  const auto rotation = [&](const char* name, const Mat3& r) { out += matrix(name, 3, 3, {r.m.begin(), r.m.end()}); };
-  const Vec3 t = rig.right_from_left.t_m;
-  rotation("R", rig.right_from_left.rotation);
-  out += matrix("T", 3, 1, {t.x, t.y, t.z});
-  rotation("R1", rectified.rig_from_left);
-  rotation("R2", rectified.rig_from_right);
-  const double f = rectified.focal_px, cx = rectified.cx_px, cy = rectified.cy_px, b = rectified.baseline_m;
-  out += matrix("P1", 3, 4, {f, 0, cx, 0, 0, f, cy, 0, 0, 0, 1, 0});
-  out += matrix("P2", 3, 4, {f, 0, cx, -f * b, 0, f, cy, 0, 0, 0, 1, 0});
-  out += matrix("Q", 4, 4, {1, 0, 0, -cx, 0, 1, 0, -cy, 0, 0, 0, f, 0, 0, 1 / b, 0});
-  return out;
-}
-
 // --- The truth -----------------------------------------------------------------------------------------------------------
 
 double rounded(double v, double per_unit) { return std::round(v * per_unit) / per_unit; }
@@ -216,7 +186,7 @@ Result<void> write_depth(SyntheticClip& clip, int index, const Staging& out) {
 Result<void> write_into(SyntheticClip& clip, const Staging& out, const std::function<void(int, int)>& progress) {
   const SyntheticClipSetup& setup = clip.setup();
   DUO_TRY_ASSIGN(const Rectified rectified, rectified_geometry(clip.rig(), out.name()));
-  DUO_TRY(write_file(out / "calibration_truth.yml", calibration(clip.rig(), rectified)));
+  DUO_TRY(write_file(out / "calibration_truth.yml", opencv_text(clip.rig(), opencv_rectified(rectified), true)));
   DUO_TRY_ASSIGN(AviWriter left, AviWriter::open(out / "left.avi", setup.size, kFramesPerSecond, kJpegQuality));
   DUO_TRY_ASSIGN(AviWriter right, AviWriter::open(out / "right.avi", setup.size, kFramesPerSecond, kJpegQuality));
   Json frames = Json::array(), events = Json::array();

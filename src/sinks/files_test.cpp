@@ -132,7 +132,7 @@ TEST_F(Sinks, PngKeepsEveryPixel) {
 
 // By hand: f = 100, b = 0.1 m, centre (1, 0); d = 5 px is z = 2 m; the pixel at x = 0 lies 2 / 100 = 0.02 m to the left.
 TEST_F(Sinks, PlyByHand) {
-  const Rectified rectified{{3, 1}, 100, 1, 0, 0.1, {}, {}};
+  const Rectified rectified{{100, 1, 0, 0.1}, {3, 1}, {}, {}};
   const auto d_q4 = test::image<std::uint16_t>({{80, kNone, 0}});
   Image<Rgb8> color({3, 1});
   color.at(0, 0) = {1, 2, 3};
@@ -165,7 +165,7 @@ TEST_F(Sinks, ColorsOfDisparity) {
 }
 
 TEST_F(Sinks, DrawsWhateverTheSize) {
-  const Rectified rectified{{1, 1}, 100, 0, 0, 0.1, {}, {}};
+  const Rectified rectified{{100, 0, 0, 0.1}, {1, 1}, {}, {}};
   for (const Size size : test::awkward_sizes())
     for (const int d : {0, 1, 160, 0xFFFE, 0xFFFF}) {
       const auto d_q4 = test::constant<std::uint16_t>(size, d);

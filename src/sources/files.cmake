@@ -6,7 +6,7 @@ target_link_libraries(duoptic PRIVATE PkgConfig::LIBAV PkgConfig::CURL)
 target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/block_flow.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/in_step.cpp
-  ${PROJECT_SOURCE_DIR}/src/sources/files.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/open_source.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/gst_process.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/http_bytes.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/in_real_time.cpp

@@ -18,9 +18,9 @@ class GstProcess {
   ///
   /// Returns  "" or why it does not run
   std::string start(const std::string& pipeline);
-  /// Kills it: who reads its pictures sees their end.
+  /// Kills the process: a reader of its pictures sees the end of the stream.
   void end();
-  /// What it said last of why it stopped; "" for nothing.
+  /// Its last error message; "" for none.
   std::string complaint() const;
   int pictures_fd() const { return pictures_; }
 

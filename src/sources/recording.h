@@ -1,4 +1,4 @@
-// What a recording says of itself before its first picture.
+// The head of a recording: all that it says before its first picture.
 #pragma once
 
 #include <cstdint>

@@ -1,14 +1,22 @@
 # Explicit names, no glob: what is not listed is not built.
+target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/trackers/raw_left.cpp)
 set(dir ${PROJECT_SOURCE_DIR}/src/trackers/arm)
 target_sources(duoptic PRIVATE
   ${dir}/arm.cpp ${dir}/arm_candidates.cpp ${dir}/arm_learn.cpp ${dir}/arm_start.cpp ${dir}/arm_tracker.cpp ${dir}/background.cpp
   ${dir}/body_map.cpp ${dir}/bones.cpp ${dir}/color_table.cpp ${dir}/fit_torso.cpp ${dir}/gray_levels.cpp ${dir}/grid.cpp
-  ${dir}/hand.cpp ${dir}/patches.cpp ${dir}/raw_left.cpp ${dir}/regions.cpp ${dir}/silhouette.cpp ${dir}/thesis_blob.cpp
-  ${dir}/thesis_observe.cpp ${dir}/thesis_points.cpp ${dir}/thesis_tracker.cpp ${dir}/torso.cpp)
-if(DUO_VULKAN)
-  target_sources(duoptic PRIVATE ${dir}/thesis_vk.cpp)
-endif()
+  ${dir}/hand.cpp ${dir}/patches.cpp ${dir}/regions.cpp ${dir}/silhouette.cpp ${dir}/torso.cpp)
 duoptic_test(trackers/arm_parts ${dir}/arm_parts_test.cpp)
 duoptic_test(trackers/arm_tracker ${dir}/arm_tracker_test.cpp)
 duoptic_test(trackers/arm_clips ${dir}/arm_clips_test.cpp SLOW)
+set(dir ${PROJECT_SOURCE_DIR}/src/trackers/thesis)
+target_sources(duoptic PRIVATE
+  ${dir}/blob.cpp ${dir}/device_observer.cpp ${dir}/map_observer.cpp ${dir}/place_joints_ref.cpp ${dir}/points.cpp
+  ${dir}/thesis_tracker.cpp)
+if(DUO_VULKAN)
+  duoptic_shader(${dir}/place_joints.comp)
+  target_sources(duoptic PRIVATE ${dir}/device_observer_vk.cpp ${dir}/observe_joints_vk.cpp ${dir}/place_joints_vk.cpp)
+endif()
+duoptic_test(trackers/place_joints ${dir}/place_joints_test.cpp)
 duoptic_test(trackers/thesis_tracker ${dir}/thesis_tracker_test.cpp)
+duoptic_vulkan_test(trackers/kernels EVERY_SIZE ASSISTED SLOW ${dir}/place_joints_vk_test.cpp ${dir}/observe_joints_vk_test.cpp)
+duoptic_vulkan_test(trackers/device ${dir}/device_observer_vk_test.cpp)

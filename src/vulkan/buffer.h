@@ -25,7 +25,7 @@ enum class Memory : std::uint8_t {
 /// Move-only; must outlive the work that uses it.
 class Buffer {
  public:
-  static constexpr std::size_t kMaxBytes = std::size_t{128} << 20;  // what every device must take as one storage buffer
+  static constexpr std::size_t kMaxBytes = std::size_t{128} << 20;  // the least limit of a storage buffer that Vulkan allows
   /// `name` is for error and validation messages; bytes > 0.
   ///
   /// Errors   more than kMaxBytes, out of memory
@@ -33,7 +33,7 @@ class Buffer {
   static Result<Buffer> make(const Device& device, const std::string& name, std::size_t bytes, Memory memory);
 
   std::size_t bytes() const { return bytes_; }
-  /// Empty for Memory::kDevice. What the CPU writes is seen by work submitted later; what work wrote, after wait().
+  /// Empty for Memory::kDevice. Work submitted later sees what the CPU wrote; after wait() the CPU sees what the work wrote.
   std::span<std::byte> mapped() const { return mapped_; }
   VkBuffer handle() const { return buffer_.get(); }
 

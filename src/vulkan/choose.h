@@ -14,7 +14,7 @@ namespace duo::vk {
 /// Errors  no such device; what the one named lacks; no usable graphics card
 Result<PhysicalDevice> choose_device(std::span<const PhysicalDevice> devices, std::string_view wanted);
 
-/// Whether the system shows a graphics card at all: much sooner known than by starting every driver.
+/// Whether the system shows a graphics card at all; much faster than starting every driver.
 bool has_card();
 
 }  // namespace duo::vk

@@ -15,12 +15,12 @@ namespace duo::vk {
 
 struct MemoryBlock;
 
-/// Stands for submitted work; tickets of one device finish in rising order.
+/// Number of submitted work; the work of a device finishes in the order of its tickets.
 using Ticket = std::uint64_t;
 
-inline constexpr std::int64_t kWaitNs = 20'000'000'000;  // longer than any sound frame, shorter than a user's patience
+inline constexpr std::int64_t kWaitNs = 20'000'000'000;  // longer than any frame takes, unless the device hangs
 
-/// Opened device. Buffers, kernels, recorders and timers keep a pointer to it and must go before it.
+/// Opened device. Buffers, kernels, recorders and timers keep a pointer to it and must be destroyed before it.
 ///
 /// Threads  any
 class Device {
@@ -32,25 +32,25 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   const DeviceInfo& info() const { return physical_.info; }
-  /// The size at which kernels can be made to run that is nearest to `wanted`, a power of two.
+  /// The supported subgroup size that is nearest to `wanted`, a power of two.
   int subgroup_size_near(int wanted) const {
     return std::clamp(wanted, physical_.least_subgroup_size, physical_.most_subgroup_size);
   }
   /// Errors  not finished within `timeout_ns`, after which it is not waited for again; device lost
   Result<void> wait(Ticket ticket, std::int64_t timeout_ns = kWaitNs) const;
   bool finished(Ticket ticket) const;
-  /// A card that has not finished a frame's work by then never will; the software driver may be at work on large pictures.
+  /// How long to wait for a frame before the device counts as hung; the software driver needs long for large pictures.
   std::int64_t patience_ns() const { return info().type == "software" ? kWaitNs : 2'000'000'000; }
-  /// Whether a wait for its work ended without the work: it may still be writing, so that nothing of it can be destroyed.
+  /// Whether a wait timed out. The device may still write to its memory, so that nothing of it can be destroyed.
   bool hung() const { return hung_; }
-  /// Keeps what kernels were compiled to for the next start, if there is more of it than was found.
+  /// Writes compiled kernels to the pipeline cache on disk, if there are more than it holds.
   void keep_pipelines() const;
 
   // For this folder and its tests.
   Result<Ticket> submit(VkCommandBuffer commands);
   VkDevice handle() const { return handle_; }
   const DeviceFunctions& fn() const { return fn_; }
-  /// Tests put calls here that fail.
+  /// For tests, which replace calls by failing ones.
   DeviceFunctions& calls() { return fn_; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
   std::weak_ptr<MemoryBlock>& last_block(std::uint32_t type, bool mapped) const { return last_blocks_[mapped][type]; }

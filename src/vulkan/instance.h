@@ -16,8 +16,8 @@ namespace duo::vk {
 /// What the validation layer checks; tests demand zero messages.
 enum class Validation : std::uint8_t {
   kOff,
-  kOn,           // calls, and that what overlaps does not depend on each other
-  kGpuAssisted,  // calls, and that kernels stay inside their buffers; slow
+  kOn,           // calls and synchronisation
+  kGpuAssisted,  // calls, and the bounds of every access in kernels; slow
 };
 
 /// A device of this machine before it is opened.
@@ -26,7 +26,7 @@ struct PhysicalDevice {
   DeviceInfo info;
   std::uint32_t queue_family = 0;
   int least_subgroup_size = 0, most_subgroup_size = 0;  // a kernel can be made to run at any power of two of these
-  std::string pipelines_id;                             // of what it compiles kernels to: device and driver
+  std::string pipelines_id;                             // of the pipeline cache: device and driver
   double tick_ns = 0;                                   // of its time stamps; 0: it has none
   std::uint64_t tick_mask = 0;                          // the bits of a time stamp that count
 };

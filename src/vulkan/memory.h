@@ -8,7 +8,7 @@
 
 namespace duo::vk {
 
-/// Goes when the last buffer in it goes.
+/// Freed with the last buffer in it.
 struct MemoryBlock {
   OwnedMemory memory;
   std::size_t bytes = 0, used = 0;

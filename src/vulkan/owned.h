@@ -1,4 +1,4 @@
-// Owned: a Vulkan object that is destroyed with its owner; left as it is where a hung device may still use it.
+// Owned: a Vulkan object that is destroyed with its owner; leaked where a hung device may still use it.
 #pragma once
 
 #include <string>

@@ -10,10 +10,10 @@ namespace duo::vk {
 /// neither is set.
 std::filesystem::path pipeline_file(const std::string& device_id);
 
-/// What write_pipelines() wrote; empty where there is nothing, or something else: drivers are not all safe against broken data.
+/// What write_pipelines() wrote; empty where the file is missing or damaged: some drivers crash on broken data.
 std::string read_pipelines(const std::filesystem::path& file);
 
-/// Nothing depends on it: a cache that cannot be written is not.
+/// A failure to write is ignored: the next start compiles the kernels again.
 void write_pipelines(const std::filesystem::path& file, const std::string& data);
 
 }  // namespace duo::vk

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <vector>
 
+#include "core/statistics.h"
 #include "vulkan/recorder.h"
 
 namespace duo::vk {
@@ -21,8 +22,7 @@ Result<double> median_s(Device& device, const Buffer& from, const Buffer& to) {
     DUO_TRY(recorder.run());
     seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
-  std::nth_element(seconds.begin(), seconds.begin() + kRuns / 2, seconds.end());
-  return seconds[kRuns / 2];
+  return median(seconds);
 }
 
 }  // namespace

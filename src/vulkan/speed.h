@@ -1,4 +1,4 @@
-// How fast a device copies: what the time of a stage that moves bytes is to be held against.
+// How fast a device copies: the lower bound of the time of a stage that moves so many bytes.
 #pragma once
 
 #include "duoptic/devices.h"

@@ -1,4 +1,4 @@
-// Timer: how long the parts of a recording take on the device's own clock.
+// Timer: time of each part of a recording, by the device's own clock.
 #pragma once
 
 #include <span>

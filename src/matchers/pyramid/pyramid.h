@@ -5,15 +5,17 @@
 #include <vector>
 
 #include "core/clock.h"
-#include "core/gray_pair.h"
-#include "core/match_setup.h"
 #include "core/pool.h"
-#include "core/tile_sets.h"
+#include "core/row_band.h"
+#include "duoptic/engine.h"
+#include "matchers/match.h"
 #include "matchers/pyramid/pyramid_params.h"
 #include "stages/balance/balance.h"
 #include "stages/match_around/match_around.h"
 #include "stages/match_tiles/match_tiles.h"
 #include "stages/speckle/speckle.h"
+#include "stages/types/gray_pair.h"
+#include "stages/types/tile_sets.h"
 
 namespace duo {
 
@@ -45,11 +47,11 @@ namespace ref {
 class Pyramid {
  public:
   Pyramid(const PyramidParams& params, const MatchSetup& setup);
-  /// Disparity of the left picture in 1/16 px.
+  /// Disparity of the left picture in 1/16 px; this matcher tells no confidence.
   ///
-  /// Shape   pair as set up, d_q4 the same size
+  /// Shape   pair as set up, out the same size
   /// Errors  none, and no allocation but in the reference's stages
-  void match(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
+  void match(const GrayPair& pair, const Match& out, StageTimer& timer);
 
  private:
   void match_around(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
@@ -71,7 +73,8 @@ namespace simd {
 class Pyramid {
  public:
   Pyramid(Pool& pool, const PyramidParams& params, const MatchSetup& setup);
-  void match(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
+  /// The same in all rows, whichever are asked for: coarse levels see far.
+  void match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows = {});
 
  private:
   void match_around(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
@@ -92,4 +95,25 @@ class Pyramid {
 };
 
 }  // namespace simd
+
+namespace vk {
+class Pyramid;
+}
+
+/// As matchers/matcher_list.h wants it.
+struct PyramidMatcher {
+  static constexpr std::string_view kName = "pyramid";
+  static constexpr std::span<const std::string_view> kPresets = kPyramidPresets;
+  static constexpr std::span<const Parameter<PyramidParams>> kParameters = kPyramidParameters;
+  static constexpr int kMaxDisparity = Engine::kMaxDisparity;
+  static constexpr bool kTellsConfidence = false;
+  using Params = PyramidParams;
+  static Result<Params> params(std::string_view preset, const Overrides& overrides) {
+    return pyramid_params(preset, overrides);
+  }
+  using Ref = ref::Pyramid;
+  using Simd = simd::Pyramid;
+  using Vulkan = vk::Pyramid;
+};
+
 }  // namespace duo

@@ -16,7 +16,7 @@ Pyramid::Pyramid(const PyramidParams& params, const MatchSetup& setup)
       filtered_(setup.size),
       balanced_(params.balance != 0 ? setup.size : Size{}) {}
 
-void Pyramid::match(const GrayPair& raw, View<std::uint16_t> d_q4, StageTimer& timer) {
+void Pyramid::match(const GrayPair& raw, const Match& out, StageTimer& timer) {
   GrayPair pair = raw;
   if (params_.balance != 0) {
     ref::balance(raw, levels_[0].max_disparity, balanced_);
@@ -34,7 +34,7 @@ void Pyramid::match(const GrayPair& raw, View<std::uint16_t> d_q4, StageTimer& t
     }
   }
   timer.stage("halve");
-  params_.search == PyramidParams::Search::kAround ? match_around(pair, d_q4, timer) : match_tiles(pair, d_q4, timer);
+  params_.search == PyramidParams::Search::kAround ? match_around(pair, out.d_q4, timer) : match_tiles(pair, out.d_q4, timer);
 }
 
 void Pyramid::match_around(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer) {

@@ -25,7 +25,7 @@ Pyramid::Pyramid(Pool& pool, const PyramidParams& params, const MatchSetup& setu
       tiles_scratch_.emplace_back(level.size, level.max_disparity, pool.threads());
 }
 
-void Pyramid::match(const GrayPair& raw, View<std::uint16_t> d_q4, StageTimer& timer) {
+void Pyramid::match(const GrayPair& raw, const Match& out, StageTimer& timer, RowBand) {
   GrayPair pair = raw;
   if (params_.balance != 0) {
     simd::balance(pool_, raw, levels_[0].max_disparity, balance_scratch_, balanced_);
@@ -43,7 +43,7 @@ void Pyramid::match(const GrayPair& raw, View<std::uint16_t> d_q4, StageTimer& t
     }
   }
   timer.stage("halve");
-  params_.search == PyramidParams::Search::kAround ? match_around(pair, d_q4, timer) : match_tiles(pair, d_q4, timer);
+  params_.search == PyramidParams::Search::kAround ? match_around(pair, out.d_q4, timer) : match_tiles(pair, out.d_q4, timer);
 }
 
 void Pyramid::match_around(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer) {

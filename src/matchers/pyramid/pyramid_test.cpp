@@ -59,7 +59,7 @@ void expect_engines_agree(Size size, int max_disparity, const char* preset, bool
       Image<std::uint16_t> got(size);
       simd::Pyramid matcher(pool, params, setup);
       for (int frame = 0; frame < 2; ++frame) {  // a second frame must not see anything of the first
-        matcher.match(pair, got, timer);
+        matcher.match(pair, {got}, timer);
         test::expect_same<std::uint16_t>(
             want, got, std::string("pyramid ") + preset + " simd " + target + " threads " + std::to_string(threads));
       }

@@ -86,7 +86,7 @@ Result<Pyramid::Level> Pyramid::make_level(const Device& device, const LevelShap
   return out;
 }
 
-Pyramid::Input Pyramid::pair_of(const Input& full, std::size_t level) const {
+MatchInput Pyramid::pair_of(const Input& full, std::size_t level) const {
   if (level == 0) return full;
   const Level& at = levels_[level];
   const auto view = [&](const Buffer& buffer) { return whole<std::uint8_t>(buffer, at.shape.size); };
@@ -94,7 +94,7 @@ Pyramid::Input Pyramid::pair_of(const Input& full, std::size_t level) const {
   return {view(at.left), view(at.right), view(at.left_inside), view(at.right_inside)};
 }
 
-void Pyramid::record(Recorder& recorder, const Input& raw, BufferView<std::uint16_t> d_q4) const {
+void Pyramid::record(Recorder& recorder, const Input& raw, const MatchOutput& out) const {
   DUO_CHECK(masked_ != raw.left_inside.absent());
   Input pair = raw;
   if (balanced_) {
@@ -106,7 +106,7 @@ void Pyramid::record(Recorder& recorder, const Input& raw, BufferView<std::uint1
   }
   record_halving(recorder, pair);
   recorder.stage("halve");
-  around_ ? record_around(recorder, pair, d_q4) : record_tiles(recorder, pair, d_q4);
+  around_ ? record_around(recorder, pair, out.d_q4) : record_tiles(recorder, pair, out.d_q4);
 }
 
 void Pyramid::record_halving(Recorder& recorder, const Input& pair) const {

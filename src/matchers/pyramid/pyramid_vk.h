@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "matchers/match_vk.h"
 #include "matchers/pyramid/pyramid.h"
 #include "stages/balance/balance_vk.h"
 #include "stages/check_left_right/check_left_right_vk.h"
@@ -20,14 +21,11 @@ namespace duo::vk {
 /// Kernels and memory of the matcher for pictures of one size; must outlive the recordings that use it.
 class Pyramid {
  public:
-  /// GrayPair on the device; the inside pictures are there exactly if the setup is masked.
-  struct Input {
-    BufferView<std::uint8_t> left = {}, right = {}, left_inside = {}, right_inside = {};
-  };
+  using Input = MatchInput;
   /// Errors  the device lacks memory, or the driver refuses a kernel
   static Result<Pyramid> make(const Device& device, const PyramidParams& params, const MatchSetup& setup);
-  /// Disparity of the left picture in 1/16 px; all pictures of the size set up.
-  void record(Recorder& recorder, const Input& pair, BufferView<std::uint16_t> d_q4) const;
+  /// Disparity of the left picture in 1/16 px, without confidence; all pictures of the size set up.
+  void record(Recorder& recorder, const Input& pair, const MatchOutput& out) const;
 
  private:
   /// What the balance of brightness needs.

@@ -37,7 +37,7 @@ void expect_agrees(vk::Device& device, const char* preset, const MatchSetup& set
     GrayPair pair{scene.left, scene.right};
     if (setup.masked) pair.left_inside = scene.left_inside, pair.right_inside = scene.right_inside;
     Image<std::uint16_t> want(setup.size);
-    reference.match(pair, want, timer);
+    reference.match(pair, {want}, timer);
 
     const OnDevice<std::uint8_t> left(device, scene.left, "left"), right(device, scene.right, "right");
     const OnDevice<std::uint8_t> left_inside(device, scene.left_inside, "left inside"),

@@ -2,13 +2,13 @@
 #pragma once
 
 #include "core/clock.h"
-#include "core/gray_pair.h"
-#include "core/match_planes.h"
-#include "core/match_setup.h"
 #include "core/pool.h"
+#include "matchers/match.h"
 #include "matchers/sgm/sgm_params.h"
 #include "stages/balance/balance.h"
 #include "stages/speckle/speckle.h"
+#include "stages/types/gray_pair.h"
+#include "stages/types/match_planes.h"
 #include "stages/weighted_median/weighted_median.h"
 
 namespace duo {
@@ -21,15 +21,6 @@ struct SgmMaps {
   SgmMaps(Size size) : balanced(size), softened(size), left_winner(size), right_winner(size), fine(size) {}
 };
 
-/// What is found. Confidence: the margin by which the winner's cost beats all disparities beside its neighbours, at least 1; 0
-/// where there is no disparity. Sure pixels are right more often (tested), how often depends on the scene.
-///
-/// Shape   both as the pair; confidence may be empty = not wanted
-struct SgmMatch {
-  View<std::uint16_t> d_q4;
-  View<std::uint8_t> confidence = {};
-};
-
 /// Margins become confidences: at least 1 where there is a disparity, 0 elsewhere.
 void keep_confidence(View<const std::uint16_t> d_q4, View<std::uint8_t> confidence);
 
@@ -38,11 +29,12 @@ namespace ref {
 class Sgm {
  public:
   Sgm(const SgmParams& params, const MatchSetup& setup);
-  /// Disparity of the left picture in 1/16 px.
+  /// Disparity of the left picture in 1/16 px. Confidence: the margin by which the winner's cost beats all disparities beside
+  /// its neighbours. Sure pixels are right more often (tested), how often depends on the scene.
   ///
   /// Shape   pair as set up, out the same size
   /// Errors  none, and no allocation but in the reference's stages
-  void match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer);
+  void match(const GrayPair& pair, const Match& out, StageTimer& timer);
 
  private:
   SgmParams params_;
@@ -59,7 +51,7 @@ class Sgm {
  public:
   Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup);
   /// The same in `rows`; none in all others. Saves most of what these would take.
-  void match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer, RowBand rows = {});
+  void match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows = {});
 
  private:
   Pool& pool_;
@@ -74,4 +66,23 @@ class Sgm {
 };
 
 }  // namespace simd
+
+namespace vk {
+class Sgm;
+}
+
+/// As matchers/matcher_list.h wants it.
+struct SgmMatcher {
+  static constexpr std::string_view kName = "sgm";
+  static constexpr std::span<const std::string_view> kPresets = kSgmPresets;
+  static constexpr std::span<const Parameter<SgmParams>> kParameters = kSgmParameters;
+  static constexpr int kMaxDisparity = SgmParams::kMaxDisparity;
+  static constexpr bool kTellsConfidence = true;
+  using Params = SgmParams;
+  static Result<Params> params(std::string_view preset, const Overrides& overrides) { return sgm_params(preset, overrides); }
+  using Ref = ref::Sgm;
+  using Simd = simd::Sgm;
+  using Vulkan = vk::Sgm;
+};
+
 }  // namespace duo

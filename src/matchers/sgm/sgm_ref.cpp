@@ -11,7 +11,7 @@ namespace duo::ref {
 Sgm::Sgm(const SgmParams& params, const MatchSetup& setup)
     : params_(params), max_disparity_(setup.max_disparity), maps_(setup.size), left_(setup.size, 0), right_(setup.size, 0) {}
 
-void Sgm::match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer) {
+void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer) {
   ref::balance(pair, max_disparity_, maps_.balanced);
   timer.stage("balance");
   const int noise_q4 = params_.soften != 0 ? ref::noise_q4(pair.left, pair.right) : 0;

@@ -23,7 +23,7 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
       speckle_scratch_(setup.size),
       smooth_scratch_(setup.size) {}
 
-void Sgm::match(const GrayPair& pair, const SgmMatch& out, StageTimer& timer, RowBand rows) {
+void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows) {
   // What the result depends on: taps of the median; islands, which are smaller than `speckle` pixels where they matter; paths
   // from above, and with paths from below the whole picture.
   const int h = pair.size().height;

@@ -1,6 +1,7 @@
 // The semi-global matcher on a device. README.md beside this file tells the method, sgm_ref.cpp the order of its stages.
 #pragma once
 
+#include "matchers/match_vk.h"
 #include "matchers/sgm/sgm.h"
 #include "stages/balance/balance_vk.h"
 #include "stages/bilateral/bilateral_vk.h"
@@ -16,15 +17,8 @@ namespace duo::vk {
 /// Kernels and memory of the matcher for pictures of one size; must outlive the recordings that use it.
 class Sgm {
  public:
-  /// GrayPair on the device; the inside pictures are there exactly if the setup is masked.
-  struct Input {
-    BufferView<std::uint8_t> left = {}, right = {}, left_inside = {}, right_inside = {};
-  };
-  /// SgmMatch on the device; confidence may be absent = not wanted.
-  struct Output {
-    BufferView<std::uint16_t> d_q4 = {};
-    BufferView<std::uint8_t> confidence = {};
-  };
+  using Input = MatchInput;
+  using Output = MatchOutput;
   /// Errors  more pixels times disparities than a buffer holds, the device lacks memory, or the driver refuses a kernel
   static Result<Sgm> make(const Device& device, const SgmParams& params, const MatchSetup& setup);
   /// Disparity of the left picture in 1/16 px; all pictures of the size set up.

@@ -18,7 +18,7 @@ namespace duo {
 /// Errors  those of open_source() for cameras
 Result<std::unique_ptr<Source>> open_camera(const SystemCalls& system, const std::string& name, const CameraWish& wish);
 
-/// Two cameras that share a look and have room on the bus together.
+/// Two cameras with the same exposure, gain and white balance, in formats that the bus has room for.
 ///
 /// Errors  those of open_camera(); both names are one camera
 Result<std::array<std::unique_ptr<Source>, 2>> open_cameras(const SystemCalls& system, const std::string& left,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/statistics.h"
+
 namespace duo {
 namespace {
 
@@ -76,9 +78,8 @@ void ClockModel::fit() {
     if (round > 0) jitter_ns_ = std::sqrt(sum_rr / used);
     for (std::size_t i = 0; i < n; ++i)
       distance_ns[i] = std::abs(static_cast<double>(stamps_[i].t_ns - origin_.t_ns) - line_ns(stamps_[i].number));
-    std::nth_element(distance_ns.begin(), distance_ns.begin() + static_cast<std::ptrdiff_t>(n / 2),
-                     distance_ns.begin() + static_cast<std::ptrdiff_t>(n));
-    gate_ns = std::max(kGate * 1.4826 * distance_ns[n / 2], kGate * kLeastJitter_ns);  // of a normal distribution
+    gate_ns = std::max(kGate * 1.4826 * median(std::span(distance_ns).first(n)),
+                       kGate * kLeastJitter_ns);  // of a normal distribution
   }
 }
 

@@ -9,11 +9,11 @@
 
 namespace duo {
 
-/// A camera takes pictures at a steady rate of its own; what jitters is how they are stamped. The model is a line, time of
-/// capture = offset + rate * (number * nominal frame time), fitted to the stamps of the last eight seconds; stamps that lie far
-/// off it have no say. What it gives lies on the line: with n stamps of standard deviation s, off by 2 s / sqrt(n).
+/// A camera takes pictures at a steady rate; its time stamps jitter. The model is a line, time of capture = offset + rate *
+/// (number * nominal frame time), fitted to the stamps of the last eight seconds without outliers. With n stamps of standard
+/// deviation s the line is off by 2 s / sqrt(n) at its end.
 ///
-/// A camera that changes its rate, or skips without counting, is seen by stamps that go on lying to one side: then the fit
+/// When a camera changes its rate, or drops pictures without counting them, stamps stay on one side of the line: then the fit
 /// starts again.
 class ClockModel {
  public:

@@ -5,9 +5,9 @@
 #include <array>
 #include <cstdint>
 
-#include "core/gray_pair.h"
 #include "core/pool.h"
 #include "stages/balance/balance_params.h"
+#include "stages/types/gray_pair.h"
 
 namespace duo {
 

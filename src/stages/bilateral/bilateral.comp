@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_8bit_storage : require
-#include "core/noise.h"
+#include "stages/types/noise.h"
 #include "stages/bilateral/bilateral_params.h"
 
 // Moves 2 bytes a pixel (with the tile's margin 1.4 are read, mostly from the cache); 8 operations a neighbour and a division.

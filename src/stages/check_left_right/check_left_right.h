@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "core/gray_pair.h"
 #include "core/pool.h"
 #include "duoptic/frame.h"
+#include "stages/types/gray_pair.h"
 
 namespace duo {
 

@@ -1,29 +1,41 @@
-// Marks the pixels that fit the tracker's targets in colour, depth and place: up to six targets in one pass.
+// Marks the pixels of several colours, each in its own window: up to six targets in one pass.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
 #include "core/pool.h"
-#include "core/targets.h"
+#include "duoptic/image.h"
+#include "duoptic/window.h"
 
 namespace duo {
 
-/// Bit t of a mark is set where the pixel lies in target t's window, fits its ColorModel, and passes its DepthGate.
+inline constexpr int kMaxTargets = 6;  // both arms: hand, elbow, shoulder
+
+/// A pixel fits where saturation and value reach their minima and its hue lies within `hue_tolerance` of `hue` around the
+/// circle.
 ///
-/// Shape    all pictures and marks H x W; d_q4 and background_q4 may be empty = nothing known
-/// Units    as in ColorModel and DepthGate
+/// Units   hue 256 = full circle; a tolerance of 128 takes every hue
+struct ColorModel {
+  std::uint8_t hue = 0, hue_tolerance = 128;
+  std::uint8_t min_saturation = 0, min_value = 0;
+};
+
+struct Target {
+  ColorModel color;
+  Window window;
+};
+
+/// Bit t of a mark is set where the pixel lies in target t's window and fits its colour.
+///
+/// Shape    all pictures and marks H x W
 /// Border   windows may reach over it
 /// Threads  rows are independent
 /// Exact    ref, simd and vk agree bit for bit
-/// Source   the colour blobs of Wren et al., "Pfinder", 1997, with a depth gate; likelihood tables as in Jones, Rehg,
-/// "Statistical
-///          color models with application to skin detection", 2002
+/// Source   the colour blobs of Wren et al., "Pfinder", 1997
 struct MarkTargets {
   View<const std::uint8_t> hue, saturation, value;
-  View<const std::uint16_t> d_q4 = {}, background_q4 = {};
-  std::span<const Target> targets;                    // at most kMaxTargets
-  std::span<const ColorLikelihood> likelihoods = {};  // what ColorModel::likelihood points into
+  std::span<const Target> targets;  // at most kMaxTargets
 };
 
 namespace ref {

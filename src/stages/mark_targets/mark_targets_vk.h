@@ -11,20 +11,17 @@ namespace duo::vk {
 /// Marks of all targets on a device; the contract is in mark_targets.h.
 class MarkTargets {
  public:
-  /// duo::MarkTargets on the device; the two depth pictures may be absent, for the recording's life. What changes from frame to
-  /// frame lies in `wanted`, as write() leaves it there.
+  /// duo::MarkTargets on the device. What changes from frame to frame lies in `targets`, as write() leaves it there.
   struct Input {
     BufferView<std::uint8_t> hue, saturation, value;
-    BufferView<std::uint16_t> d_q4 = {}, background_q4 = {};
-    const Buffer* wanted = nullptr;
+    const Buffer* targets = nullptr;
   };
   static Result<MarkTargets> make(const Device& device);
   void record(Recorder& recorder, const Input& in, BufferView<std::uint8_t> marks, Size size) const;
 
-  /// Bytes of `wanted` for so many likelihood tables.
-  static std::size_t wanted_bytes(std::size_t tables);
-  /// `wanted` holds all that is given.
-  static void write(std::span<const Target> targets, std::span<const ColorLikelihood> likelihoods, std::span<std::byte> wanted);
+  /// Bytes of Input::targets.
+  static std::size_t target_bytes();
+  static void write(std::span<const Target> targets, std::span<std::byte> to);
 
  private:
   Kernel kernel_;

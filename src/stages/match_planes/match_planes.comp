@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_8bit_storage : require
-#include "core/noise.h"
+#include "stages/types/noise.h"
 #include "stages/match_planes/match_planes_params.h"
 
 // Two tiles: gray, then all values with a border of one pixel for the intervals. Moves 14 bytes a pixel (2 read with an inside

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "core/match_planes.h"
 #include "core/pool.h"
+#include "stages/types/match_planes.h"
 
 namespace duo {
 

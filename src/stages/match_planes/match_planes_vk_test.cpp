@@ -1,6 +1,6 @@
 #include "stages/match_planes/match_planes_vk.h"
 
-#include "core/noise.h"
+#include "stages/types/noise.h"
 #include "tests/agree_vk.h"
 
 namespace duo {

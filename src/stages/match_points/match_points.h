@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/pool.h"
-#include "core/sift_points.h"
+#include "stages/types/sift_points.h"
 
 namespace duo {
 

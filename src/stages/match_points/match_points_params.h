@@ -1,7 +1,7 @@
 // Included by C++ and by GLSL.
 #ifndef DUO_MATCH_POINTS_PARAMS_H
 #define DUO_MATCH_POINTS_PARAMS_H
-#include "core/sift_list.h"
+#include "stages/types/sift_list.h"
 #ifdef __cplusplus
 namespace duo::vk {
 #endif

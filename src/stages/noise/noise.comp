@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "core/noise.h"
+#include "stages/types/noise.h"
 #include "stages/noise/noise_params.h"
 
 // The level from the bins; one workgroup, of which two invocations walk along a picture's bins each.

@@ -4,13 +4,14 @@
 #include <array>
 #include <cstdint>
 
-#include "core/noise.h"
 #include "core/pool.h"
 #include "duoptic/image.h"
+#include "stages/types/noise.h"
 
 namespace duo {
 
-/// The noise of the noisier picture, in 1/16 gray levels; 0 where it is no more than clean pictures have, see core/noise.h.
+/// The noise of the noisier picture, in 1/16 gray levels; 0 where it is no more than clean pictures have, see
+/// stages/types/noise.h.
 ///
 /// The difference 1 -2 1 / -2 4 -2 / 1 -2 1 vanishes where a picture is linear along its rows or its columns. Its amounts are
 /// summed over blocks of 8x8 pixels, corners at x = 1, 9, 17 ... and y = 1, 17, 33 ...; the sums are sorted into bins of 16. A

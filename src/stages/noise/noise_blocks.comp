@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_8bit_storage : require
-#include "core/noise.h"
+#include "stages/types/noise.h"
 #include "stages/noise/noise_params.h"
 
 // An invocation a block: its 10x10 pixels, row by row. Moves half of both pictures' bytes; 6 operations a pixel looked at.

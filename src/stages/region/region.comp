@@ -1,7 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_8bit_storage : require
-#extension GL_EXT_shader_16bit_storage : require
 #include "stages/region/region_params.h"
 
 // Connected components by union-find over the windows' pixels in row-major order; each pixel's label is that of one before it in
@@ -20,14 +19,12 @@
 layout(local_size_x = kRegionLanes) in;
 layout(std430, binding = 0) readonly buffer Tasks { RegionTask tasks[]; };
 layout(std430, binding = 1) buffer Marks { uint8_t marks[]; };
-layout(std430, binding = 2) readonly buffer Disparity { uint16_t d_q4[]; };
 // A task: room labels, room counts, then the key and the pixel of each workgroup's choice.
-layout(std430, binding = 3) coherent buffer Forest { int forest[]; };
-layout(std430, binding = 4) writeonly buffer Results { ivec2 results[]; };  // label, pixels
+layout(std430, binding = 2) coherent buffer Forest { int forest[]; };
+layout(std430, binding = 3) writeonly buffer Results { ivec2 results[]; };  // label, pixels
 layout(push_constant) uniform Push { RegionPush p; };
 
 const int kNone = -1, kFar = 0x7FFFFFFF;
-const uint kUnknown = 0xFFFF;
 const int kWords = kRegionLanes / 32;
 
 shared uint breaks[kWords];  // bit set: the pixel does not go on with its left neighbour's run
@@ -53,16 +50,12 @@ void open_task(int t) {
 
 ivec2 place_of(int pixel) { return window.xy + ivec2(pixel % wide, pixel / wide); }
 int marks_index(ivec2 at) { return p.marks.offset + at.y * p.marks.stride + at.x; }
-uint disparity(ivec2 at) { return p.with_d != 0 ? uint(d_q4[p.d.offset + at.y * p.d.stride + at.x]) : 0; }
 
-bool is_member(ivec2 at) {
-  return (uint(marks[marks_index(at)]) >> task.bit & 1) != 0 && disparity(at) != kUnknown;
-}
+bool is_member(ivec2 at) { return (uint(marks[marks_index(at)]) >> task.bit & 1) != 0; }
 
 // Whether two neighbours belong together; the one to the left or above may lie outside the window.
 bool joined(ivec2 at, ivec2 before) {
-  if (before.x < window.x || before.y < window.y || !is_member(at) || !is_member(before)) return false;
-  return abs(int(disparity(at)) - int(disparity(before))) <= task.step_q4;
+  return before.x >= window.x && before.y >= window.y && is_member(at) && is_member(before);
 }
 bool joined_left(ivec2 at) { return joined(at, at - ivec2(1, 0)); }
 bool joined_up(ivec2 at) { return joined(at, at - ivec2(0, 1)); }
@@ -141,7 +134,6 @@ void count_runs(int lane, int pixel) {
 
 // Smaller is better; the first pixel of several alike wins.
 uint key_of(int pixel) {
-  if (task.largest != 0) return ~uint(forest[counts + pixel]);
   const ivec2 from = place_of(pixel) - ivec2(task.seed_x, task.seed_y);
   return uint(from.x * from.x) + uint(from.y * from.y);
 }
@@ -155,8 +147,7 @@ void choose(int lane) {
   uint key = 0xFFFFFFFFu;
   int best = kFar;
   for (int i = int(gl_GlobalInvocationID.x); i < pixels; i += kRegionGroups * kRegionLanes) {
-    const int label = forest[labels + i];
-    if (label == kNone || (task.largest != 0 && label != i)) continue;
+    if (forest[labels + i] == kNone) continue;
     const uint here = key_of(i);
     if (here >= key) continue;
     key = here;

@@ -6,13 +6,11 @@
 namespace duo::vk {
 #endif
 
-// duo::Region in whole words, without its picture; all zero = an empty window.
+// duo::Region in whole words; all zero = an empty window.
 struct RegionTask {
   int bit;
   int x, y, x_end, y_end;
-  int largest;  // 0 or 1: the pick
   int seed_y, seed_x;
-  int step_q4;
 };
 
 const int kRegionLanes = 128;  // invocations of a workgroup
@@ -23,9 +21,8 @@ const int kMostRegions = 8;    // one a bit
 const int kRegionRuns = 0, kRegionJoin = 1, kRegionCount = 2, kRegionChoose = 3, kRegionClear = 4;
 
 struct RegionPush {
-  Plane marks, d;
+  Plane marks;
   int width, height;
-  int with_d;  // 0 or 1
   int tasks;
   int room;  // pixels of the largest window
   int step;

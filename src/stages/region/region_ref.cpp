@@ -1,4 +1,3 @@
-#include <cstdlib>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -9,23 +8,16 @@
 namespace duo::ref {
 namespace {
 
-bool member(const Region& in, View<const std::uint8_t> marks, int y, int x) {
-  return (marks.at(y, x) >> in.bit & 1) != 0 && (in.d_q4.empty() || in.d_q4.at(y, x) != Disparity::kNone);
-}
-
-bool joined(const Region& in, int y, int x, int y2, int x2) {
-  return in.d_q4.empty() || std::abs(in.d_q4.at(y, x) - in.d_q4.at(y2, x2)) <= in.step_q4;
-}
-
-/// Gives each member the label of its region, others -1, by flooding from each pixel in reading order.
+/// Gives each marked pixel the label of its region, others -1, by flooding from each pixel in reading order.
 Image<std::int32_t> labels_of(const Region& in, const Window& window, View<const std::uint8_t> marks) {
+  const auto member = [&](int y, int x) { return (marks.at(y, x) >> in.bit & 1) != 0; };
   auto labels = Image<std::int32_t>(marks.size());
   for (int y = 0; y < marks.height(); ++y)
     for (int x = 0; x < marks.width(); ++x) labels.at(y, x) = -1;
   std::vector<std::pair<int, int>> region;
   for (int y0 = window.y; y0 < window.y_end(); ++y0)
     for (int x0 = window.x; x0 < window.x_end(); ++x0) {
-      if (labels.at(y0, x0) >= 0 || !member(in, marks, y0, x0)) continue;
+      if (labels.at(y0, x0) >= 0 || !member(y0, x0)) continue;
       const int label = y0 * marks.width() + x0;
       region.assign(1, {y0, x0});
       labels.at(y0, x0) = label;
@@ -33,8 +25,7 @@ Image<std::int32_t> labels_of(const Region& in, const Window& window, View<const
         const auto [y, x] = region[i];
         for (const auto& [dy, dx] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
           const int y2 = y + dy, x2 = x + dx;
-          if (!window.contains(y2, x2) || labels.at(y2, x2) >= 0 || !member(in, marks, y2, x2) || !joined(in, y, x, y2, x2))
-            continue;
+          if (!window.contains(y2, x2) || labels.at(y2, x2) >= 0 || !member(y2, x2)) continue;
           labels.at(y2, x2) = label;
           region.emplace_back(y2, x2);
         }
@@ -46,7 +37,7 @@ Image<std::int32_t> labels_of(const Region& in, const Window& window, View<const
 }  // namespace
 
 RegionLabel keep_region(const Region& in, View<std::uint8_t> marks) {
-  DUO_CHECK(in.bit >= 0 && in.bit < 8 && (in.d_q4.empty() || in.d_q4.size() == marks.size()));
+  DUO_CHECK(in.bit >= 0 && in.bit < 8);
   const Window window = in.window.within(marks.size());
   const Image<std::int32_t> labels = labels_of(in, window, marks);
   std::vector<std::int32_t> pixels(static_cast<std::size_t>(marks.width()) * marks.height());
@@ -62,8 +53,7 @@ RegionLabel keep_region(const Region& in, View<std::uint8_t> marks) {
       if (label < 0) continue;
       const std::int32_t count = pixels[static_cast<std::size_t>(label)];
       const std::int64_t dx = x - in.seed.x, dy = y - in.seed.y, distance2 = dx * dx + dy * dy;
-      const bool better = in.pick == Region::Pick::kLargest ? count > best.pixels : distance2 < nearest;
-      if (!better) continue;
+      if (distance2 >= nearest) continue;
       best = {label, count};
       nearest = distance2;
     }

@@ -6,8 +6,6 @@
 namespace duo {
 namespace {
 
-using test::kNone;
-
 struct Kept {
   Image<std::uint8_t> marks;
   RegionLabel region;
@@ -48,49 +46,28 @@ TEST(Region, EqualDistanceTakesTheFirst) {
   EXPECT_EQ(keep(in, src).region, (RegionLabel{2, 1}));
 }
 
-TEST(Region, Largest) {
+// By hand: the window ends the second region at its upper two rows; (2,0) outside stays.
+TEST(Region, EndsAtTheWindow) {
   Region in;
   in.bit = 1;
-  in.window = Window::all(kThree.size());
-  in.pick = Region::Pick::kLargest;
-  EXPECT_EQ(keep(in, kThree).region, (RegionLabel{5, 4}));
-  in.window = {0, 0, 6, 2};  // three pixels each: the lowest label; (2,0) outside stays
-  const Kept tie = keep(in, kThree);
-  EXPECT_EQ(tie.region, (RegionLabel{1, 3}));
-  EXPECT_EQ(tie.marks.at(2, 0), 2);
-  EXPECT_EQ(tie.marks.at(1, 4), 0);
+  in.window = {0, 0, 6, 2};
+  in.seed = {0, 5};
+  const Kept got = keep(in, kThree);
+  EXPECT_EQ(got.region, (RegionLabel{5, 3}));
+  test::expect_same<std::uint8_t>(test::image<std::uint8_t>({{1, 0, 0, 0, 1, 3}, {0, 0, 0, 0, 2, 2}, {2, 0, 0, 0, 2, 0}}),
+                                  got.marks, "the second");
   in.bit = 7;
   EXPECT_EQ(keep(in, kThree).region, RegionLabel{});
-}
-
-// By hand, step 16: the row splits between 116 and 133; the pixel without disparity joins neither side and goes.
-TEST(Region, CutAtDepthSteps) {
-  const auto src = test::image<std::uint8_t>({{1, 1, 1, 1, 1}});
-  const auto d = test::image<std::uint16_t>({{100, 116, 133, kNone, 133}});
-  Region in;
-  in.window = Window::all(src.size());
-  in.seed = {0, 0};
-  in.d_q4 = d;
-  in.step_q4 = 16;
-  const Kept got = keep(in, src);
-  EXPECT_EQ(got.region, (RegionLabel{0, 2}));
-  test::expect_same<std::uint8_t>(test::image<std::uint8_t>({{1, 1, 0, 0, 0}}), got.marks, "cut");
-  in.step_q4 = 17;
-  EXPECT_EQ(keep(in, src).region, (RegionLabel{0, 3}));
-  in.seed = {0, 3};  // equally far from columns 2 and 4
-  EXPECT_EQ(keep(in, src).region, (RegionLabel{0, 3}));
 }
 
 Region random_region(std::mt19937& rng, Size size) {
   const auto below = [&](int n) { return static_cast<int>(rng() % static_cast<unsigned>(n)); };
   Region in;
   in.bit = below(8);
-  in.pick = below(2) == 0 ? Region::Pick::kNearest : Region::Pick::kLargest;
   in.seed = {below(size.height + 6) - 3, below(size.width + 6) - 3};
   in.window = below(2) == 0 ? Window::all(size)
                             : Window{below(size.width + 4) - 4, below(size.height + 4) - 4, below(size.width + 8),
                                      below(size.height + 8)};
-  in.step_q4 = below(30);
   return in;
 }
 
@@ -102,15 +79,10 @@ TEST(Region, SimdAgrees) {
   for (const Size size : sizes)
     for (int round = 0; round < 16; ++round) {
       test::Tight<std::uint8_t> src(size), want(size);
-      test::Tight<std::uint16_t> d(size);
       const unsigned share = 1 + rng() % 9;
       for (int y = 0; y < size.height; ++y)
-        for (int x = 0; x < size.width; ++x) {
-          src.view.at(y, x) = static_cast<std::uint8_t>(rng() % 10 < share ? 0xFF : rng());
-          d.view.at(y, x) = rng() % 12 == 0 ? kNone : 10 * (rng() % 5);
-        }
-      Region in = random_region(rng, size);
-      if (round % 2 == 0) in.d_q4 = d.view;
+        for (int x = 0; x < size.width; ++x) src.view.at(y, x) = static_cast<std::uint8_t>(rng() % 10 < share ? 0xFF : rng());
+      const Region in = random_region(rng, size);
       want.pixels = src.pixels;
       const RegionLabel label = ref::keep_region(in, want.view);
       for (Pool* pool : {&one, &two, &three}) {
@@ -127,7 +99,6 @@ TEST(Region, SimdAgrees) {
 TEST(Region, Time) {
   const Size size{640, 480};
   Image<std::uint8_t> blobs(size);
-  const auto d = test::constant<std::uint16_t>(size, 300);
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x) blobs.at(y, x) = (x / 20 * 7 + y / 30 * 5) % 4 == 0;
   auto marks = blobs.clone();
@@ -135,16 +106,14 @@ TEST(Region, Time) {
   Pool one(1);
   Region in;
   in.window = Window::all(size);
-  in.pick = Region::Pick::kLargest;
+  in.seed = {240, 320};
   const auto run = [&] {
     for (int y = 0; y < size.height; ++y) std::copy_n(blobs.row(y), size.width, marks.row(y));
     simd::keep_region(one, in, marks, scratch);
   };
   test::print_time("region", size, run);
-  in.d_q4 = d;
-  test::print_time("region, depth steps", size, run);
   in.window = {300, 200, 120, 120};
-  test::print_time("region, depth steps, 120x120", size, run);
+  test::print_time("region, 120x120", size, run);
 }
 
 }  // namespace

@@ -32,22 +32,20 @@ Result<Region::Scratch> Region::Scratch::make(const Device& device, Size largest
 
 Result<Region> Region::make(const Device& device) {
   Region out;
-  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"region", kRegionCode, 5, sizeof(RegionPush)}));
+  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"region", kRegionCode, 4, sizeof(RegionPush)}));
   return out;
 }
 
-void Region::record(Recorder& recorder, const Buffer& tasks, int count, BufferView<std::uint16_t> d_q4,
-                    BufferView<std::uint8_t> marks, const Scratch& scratch, const Buffer& results, Size size) const {
+void Region::record(Recorder& recorder, const Buffer& tasks, int count, BufferView<std::uint8_t> marks, const Scratch& scratch,
+                    const Buffer& results, Size size) const {
   DUO_CHECK(count > 0 && count <= scratch.regions_ && tasks.bytes() >= task_bytes(count));
-  DUO_CHECK(marks.holds(size) && (d_q4.absent() || d_q4.holds(size)) && size.width * size.height <= kMostPixels);
+  DUO_CHECK(marks.holds(size) && size.width * size.height <= kMostPixels);
   DUO_CHECK(results.bytes() >= static_cast<std::size_t>(count) * sizeof(RegionLabel));
   const auto groups = [](int pixels) { return (pixels + kRegionLanes - 1) / kRegionLanes; };
   const auto dispatch = [&](int step, Size in) {
-    const RegionPush push{marks.plane, d_q4.plane, size.width, size.height, !d_q4.absent(), count, scratch.room_, step};
+    const RegionPush push{marks.plane, size.width, size.height, count, scratch.room_, step};
     const Use use_marks = step == kRegionClear ? writes(marks) : reads(marks);
-    recorder.dispatch(
-        kernel_, push,
-        {reads(tasks), use_marks, d_q4.absent() ? reads(tasks) : reads(d_q4), writes(scratch.forest_), writes(results)}, in);
+    recorder.dispatch(kernel_, push, {reads(tasks), use_marks, writes(scratch.forest_), writes(results)}, in);
   };
   for (const int step : {kRegionRuns, kRegionJoin, kRegionCount}) dispatch(step, {groups(scratch.room_), count});
   dispatch(kRegionChoose, {kRegionGroups, count});
@@ -64,9 +62,8 @@ void Region::write(std::span<const duo::Region> regions, std::span<std::byte> ta
     const duo::Region& in = regions[i];
     DUO_CHECK(in.bit >= 0 && in.bit < 8 && (bits >> in.bit & 1) == 0);
     bits |= 1u << in.bit;
-    const RegionTask task{
-        in.bit,    in.window.x, in.window.y, in.window.x_end(), in.window.y_end(), in.pick == duo::Region::Pick::kLargest,
-        in.seed.y, in.seed.x,   in.step_q4};
+    const Window& window = in.window;
+    const RegionTask task{in.bit, window.x, window.y, window.x_end(), window.y_end(), in.seed.y, in.seed.x};
     std::memcpy(tasks.data() + i * sizeof task, &task, sizeof task);
   }
 }

@@ -8,10 +8,10 @@
 #include <memory>
 #include <vector>
 
-#include "core/match_planes.h"
 #include "core/pool.h"
 #include "core/row_band.h"
 #include "duoptic/frame.h"
+#include "stages/types/match_planes.h"
 
 namespace duo {
 
@@ -72,12 +72,13 @@ void semi_global(const SemiGlobal& in, const SemiGlobalMatch& out);
 }  // namespace ref
 
 namespace simd {
-/// What one thread does of a sweep. Rows are counted in the sweep's order, from the top or, `up`, from the bottom: paths pass
-/// the first ones, the sums of the next are kept in the volume, and winners are picked in the rest.
+/// What one thread does of a sweep. Rows are counted in the sweep's order, from the top or, with `up`, from the bottom. Rows
+/// [0, passed) only propagate path costs; rows [passed, kept) also store their sums in the volume; rows [kept, count) pick
+/// winners.
 struct SemiGlobalPart {
   bool up = false;
-  int passed = 0, kept = 0, count = 0;  // where passing, keeping and picking end
-  // Its columns are those of its team: the whole row, or a half of it, which is walked along from its end to the middle.
+  int passed = 0, kept = 0, count = 0;
+  // Columns of its team: the whole row, or one half, which is processed from the picture's border to the middle.
   int begin = 0, end = 0;
   int thread = 0, threads = 1;               // which of its team
   int thread_of_all = 0, ring = 0;           // its memory: rows, and the team's first row of path costs
@@ -99,7 +100,7 @@ class SemiGlobalScratch {
   /// Columns by which the planes must continue to the left.
   static int padding(int max_disparity) { return (max_disparity + kGap - 1) / kGap * kGap; }
 
-  static constexpr int kBehind = 6;  // rows of a thread that the way back of halves is behind the way along; else it is one
+  static constexpr int kBehind = 6;  // rows by which the backward pass over a half follows the forward pass; over a whole row it is one
   static constexpr int kGap = 64;    // bytes of 255 between the path costs of two pixels: d = -1 and d = max_disparity
   struct Row {
     Image<std::uint8_t> sums, costs;   // [pixel][disparity]

@@ -6,8 +6,8 @@
 
 #include "core/area.h"
 #include "core/pool.h"
-#include "core/sift_points.h"
 #include "duoptic/image.h"
+#include "stages/types/sift_points.h"
 
 namespace duo {
 

@@ -1,7 +1,7 @@
 // Included by C++ and by GLSL: how the kernels of SIFT divide their memory.
 #ifndef DUO_SIFT_PARAMS_H
 #define DUO_SIFT_PARAMS_H
-#include "core/sift_list.h"
+#include "stages/types/sift_list.h"
 #include "vulkan/plane.h"
 #ifdef __cplusplus
 namespace duo::vk {

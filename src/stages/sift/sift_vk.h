@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/sift_list.h"
 #include "stages/sift/sift.h"
+#include "stages/types/sift_list.h"
 #include "vulkan/recorder.h"
 
 namespace duo::vk {

@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "core/pool.h"
-#include "core/run_forest.h"
 #include "duoptic/frame.h"
+#include "stages/types/run_forest.h"
 
 namespace duo {
 
@@ -16,7 +16,7 @@ namespace duo {
 // Units    1/16 px
 // Threads  simd: bands in parallel, joined at their borders; the result does not depend on the bands
 // Exact    ref, simd and vk agree bit for bit
-// Source   connected components by union-find (core/run_forest.h)
+// Source   connected components by union-find (stages/types/run_forest.h)
 namespace ref {
 void remove_speckle(View<std::uint16_t> d_q4, int step_q4, int smallest);
 }

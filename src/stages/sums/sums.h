@@ -1,13 +1,24 @@
-// What is left of a target's pixels: count, moments, disparity, hue; and its outermost pixels.
+// Sums over an area: count, moments, disparity, hue.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
+#include "core/area.h"
 #include "core/pool.h"
-#include "core/targets.h"
 
 namespace duo {
+
+/// Means and axes follow without the picture.
+///
+/// Units   pixels; d_q4 1/16 px over the `known` pixels that have a disparity; hue sums of the cosine and sine in 1/16384
+struct AreaSums {
+  std::int64_t count = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+  std::int64_t known = 0, d_q4 = 0;
+  std::int64_t hue_cos_q14 = 0, hue_sin_q14 = 0;
+  Pixel first = {}, last = {};  // upper left and lower right corner of the bounding box, both inside
+  friend bool operator==(const AreaSums&, const AreaSums&) = default;
+};
 
 /// Sums over the pixels of an area: see AreaSums.
 ///
@@ -27,23 +38,11 @@ struct Sums {
 /// The hue whose direction fits the sums best, the lowest where several do; none for an area without a mean direction.
 std::optional<std::uint8_t> mean_hue(const AreaSums& sums);
 
-// Outermost pixels of an area, first in reading order where several are; none in an empty area.
-//   farthest_pixel: at the greatest distance from `from`, which may lie anywhere. Seen from the elbow that is the hand's end.
-//   extreme_pixel:  greatest x along_x + y along_y.
-//
-// Units    px; |from| and |along| below 2^15
-// Threads  rows are independent
-// Exact    ref, simd and vk agree bit for bit
-// Source   ours; on convex measures a row's outermost pixel is its first or its last one
 namespace ref {
 AreaSums sums(const Sums& in);
-Pixel farthest_pixel(Size size, const Area& area, Pixel from);
-Pixel extreme_pixel(Size size, const Area& area, int along_x, int along_y);
-}  // namespace ref
+}
 namespace simd {
 AreaSums sums(Pool& pool, const Sums& in);
-Pixel farthest_pixel(Pool& pool, Size size, const Area& area, Pixel from);
-Pixel extreme_pixel(Pool& pool, Size size, const Area& area, int along_x, int along_y);
-}  // namespace simd
+}
 
 }  // namespace duo

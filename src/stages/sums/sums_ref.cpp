@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/check.h"
+#include "duoptic/frame.h"
 #include "stages/sums/hue_circle.h"
 
 namespace duo {
@@ -22,25 +23,6 @@ std::optional<std::uint8_t> mean_hue(const AreaSums& sums) {
 }
 
 namespace ref {
-namespace {
-
-template <class Measure>
-Pixel outermost(Size size, const Area& area, Measure measure) {
-  Pixel best;
-  std::int64_t most = 0;
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x) {
-      if (!area.contains(y, x)) continue;
-      const std::int64_t here = measure(y, x);
-      if (best.found() && here <= most) continue;
-      best = {y, x};
-      most = here;
-    }
-  return best;
-}
-
-}  // namespace
-
 AreaSums sums(const Sums& in) {
   DUO_CHECK(in.area.marks.empty() || in.area.marks.size() == in.size);
   DUO_CHECK((in.hue.empty() || in.hue.size() == in.size) && (in.d_q4.empty() || in.d_q4.size() == in.size));
@@ -67,15 +49,6 @@ AreaSums sums(const Sums& in) {
       out.hue_sin_q14 += hue_sin_q14(in.hue.at(row, column));
     }
   return out;
-}
-
-Pixel farthest_pixel(Size size, const Area& area, Pixel from) {
-  return outermost(size, area,
-                   [&](std::int64_t y, std::int64_t x) { return (x - from.x) * (x - from.x) + (y - from.y) * (y - from.y); });
-}
-
-Pixel extreme_pixel(Size size, const Area& area, int along_x, int along_y) {
-  return outermost(size, area, [&](std::int64_t y, std::int64_t x) { return x * along_x + y * along_y; });
 }
 
 }  // namespace ref

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "core/check.h"
+#include "duoptic/frame.h"
 #include "stages/sums/hue_circle.h"
 
 namespace duo::simd {
@@ -73,40 +74,6 @@ void add(const AreaSums& part, AreaSums& out) {
     out.*member += part.*member;
 }
 
-struct Outermost {
-  Pixel pixel;
-  std::int64_t measure = 0;
-  void offer(Pixel other, std::int64_t its) {
-    const bool earlier = other.y < pixel.y || (other.y == pixel.y && other.x < pixel.x);
-    if (pixel.found() && (its < measure || (its == measure && !earlier))) return;
-    pixel = other;
-    measure = its;
-  }
-};
-
-/// `measure` is convex along a row.
-template <class Measure>
-Pixel outermost(Pool& pool, Size size, const Area& area, Measure measure) {
-  DUO_CHECK(area.marks.empty() || area.marks.size() == size);
-  const Window bounds = area.bounds(size);
-  Outermost best;
-  std::mutex merge;
-  pool.rows(bounds.height, [&](int from, int to) {
-    Outermost mine;
-    each_row(area, bounds, bounds.y + from, bounds.y + to, [&](int y, int begin, int end) {
-      const int first = area.next_marked(y, begin, end);
-      if (first == end) return;
-      const int last = area.last_marked(y, begin, end);
-      mine.offer({y, first}, measure(y, first));
-      mine.offer({y, last}, measure(y, last));
-    });
-    if (!mine.pixel.found()) return;
-    const std::lock_guard lock(merge);
-    best.offer(mine.pixel, mine.measure);
-  });
-  return best.pixel;
-}
-
 }  // namespace
 
 AreaSums sums(Pool& pool, const Sums& in) {
@@ -123,15 +90,6 @@ AreaSums sums(Pool& pool, const Sums& in) {
     add(mine, out);
   });
   return out;
-}
-
-Pixel farthest_pixel(Pool& pool, Size size, const Area& area, Pixel from) {
-  return outermost(pool, size, area,
-                   [&](std::int64_t y, std::int64_t x) { return (x - from.x) * (x - from.x) + (y - from.y) * (y - from.y); });
-}
-
-Pixel extreme_pixel(Pool& pool, Size size, const Area& area, int along_x, int along_y) {
-  return outermost(pool, size, area, [&](std::int64_t y, std::int64_t x) { return x * along_x + y * along_y; });
 }
 
 }  // namespace duo::simd

@@ -67,22 +67,9 @@ TEST(Sums, Disc) {
   EXPECT_EQ(got.last, (Pixel{6, 6}));
 }
 
-// By hand, from (1,1): (0,3) at 5, (2,1) at 1, (2,2) at 2, (0,1) at 1.
-TEST(Sums, OutermostPixels) {
-  const auto marks = test::image<std::uint8_t>({{0, 2, 0, 3}, {1, 0, 0, 0}, {0, 2, 2, 0}});
-  const Area area{Window::all(marks.size()), {}, marks, 2};
-  EXPECT_EQ(ref::farthest_pixel(marks.size(), area, {1, 1}), (Pixel{0, 3}));
-  EXPECT_EQ(ref::farthest_pixel(marks.size(), area, {1, 30}), (Pixel{0, 1})) << "(2,1) is as far, later";
-  EXPECT_EQ(ref::extreme_pixel(marks.size(), area, 0, 1), (Pixel{2, 1})) << "(2,2) is as low, later";
-  EXPECT_EQ(ref::extreme_pixel(marks.size(), area, 1, 0), (Pixel{0, 3}));
-  EXPECT_EQ(ref::extreme_pixel(marks.size(), area, -1, -1), (Pixel{0, 1}));
-  EXPECT_FALSE(ref::extreme_pixel(marks.size(), {Window::all(marks.size()), {}, marks, 4}, 1, 0).found());
-}
-
 TEST(Sums, SimdAgrees) {
   std::mt19937 rng(12);
   Pool one(1), two(2), three(3);
-  const auto below = [&](int n) { return static_cast<int>(rng() % static_cast<unsigned>(n)); };
   for (const Size size : test::awkward_sizes())
     for (int round = 0; round < 24; ++round) {
       test::Tight<std::uint8_t> marks(size), hue(size);
@@ -94,14 +81,8 @@ TEST(Sums, SimdAgrees) {
       Sums in{size, test::random_area(rng, size, marks.view)};
       if (round % 3 != 0) in.hue = hue.view;
       if (round % 4 != 0) in.d_q4 = d.view;
-      const Pixel from{below(2 * size.height) - size.height / 2, below(2 * size.width) - size.width / 2};
-      const int along_x = below(7) - 3, along_y = below(7) - 3;
-      for (Pool* pool : {&one, &two, &three}) {
+      for (Pool* pool : {&one, &two, &three})
         EXPECT_EQ(simd::sums(*pool, in), ref::sums(in)) << size.width << "x" << size.height << " round " << round;
-        EXPECT_EQ(simd::farthest_pixel(*pool, size, in.area, from), ref::farthest_pixel(size, in.area, from));
-        EXPECT_EQ(simd::extreme_pixel(*pool, size, in.area, along_x, along_y),
-                  ref::extreme_pixel(size, in.area, along_x, along_y));
-      }
       if (HasFailure()) return;
     }
 }
@@ -121,8 +102,6 @@ TEST(Sums, Time) {
   in.area.bits = 1;
   in.area.window = {300, 200, 120, 120};
   test::print_time("sums, 120x120 marked", size, [&] { simd::sums(one, in); });
-  in.area.window = Window::all(size);
-  test::print_time("farthest_pixel, all marked", size, [&] { simd::farthest_pixel(one, size, in.area, {9, 9}); });
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "duoptic/tracker.h"
 #include "trackers/arm/bones.h"
 #include "trackers/arm/hand.h"
-#include "trackers/arm/raw_left.h"
+#include "trackers/raw_left.h"
 #include "trackers/arm/torso.h"
 
 namespace duo::arm {

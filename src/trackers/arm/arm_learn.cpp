@@ -1,6 +1,7 @@
 // What the arm learns while it is seen: the rest of the body, colours, the background, new patches.
 #include <algorithm>
 
+#include "core/statistics.h"
 #include "trackers/arm/arm.h"
 
 namespace duo::arm {
@@ -27,9 +28,7 @@ void Arm::learn_shoulder(const Grid& grid) {
   if (!found) return;
   shoulder_misses_m_.push_back(found->z - shoulder_.p.z + shoulder_behind_m_);
   if (shoulder_misses_m_.size() < kLeastFrames) return;
-  const auto middle = shoulder_misses_m_.begin() + static_cast<std::ptrdiff_t>(shoulder_misses_m_.size() / 2);
-  std::nth_element(shoulder_misses_m_.begin(), middle, shoulder_misses_m_.end());
-  shoulder_behind_m_ = std::clamp(*middle, -kMostM, kMostM);
+  shoulder_behind_m_ = std::clamp(median(shoulder_misses_m_), -kMostM, kMostM);
   lengths_.upper_m = norm(first_elbow_ - (first_shoulder_ + shoulder_behind_m_ * first_ray_));
 }
 

@@ -7,11 +7,11 @@
 #include <random>
 #include <vector>
 
+#include "core/rotation.h"
 #include "tests/agree.h"
 #include "trackers/arm/bones.h"
 #include "trackers/arm/hand.h"
 #include "trackers/arm/patches.h"
-#include "trackers/arm/rotation.h"
 #include "trackers/arm/torso.h"
 
 namespace duo::arm {
@@ -181,15 +181,15 @@ TEST(ElbowFinder, FindsTheBentLimb) {
   for (int y = 16; y < 25; ++y) fill_row(grid, y, 30, 65, 1.0F, silhouette.front);
   for (int y = 25; y < 50; ++y) fill_row(grid, y, 56, 65, 1.0F, silhouette.front);
   const Params params;
-  const Vec3 shoulder = grid.camera.point({30, 20}, 1.03), elbow = grid.camera.point({60, 20}, 1.03),
-             hand = grid.camera.point({60, 50}, 1.02);
+  const Vec3 shoulder = grid.camera.unproject({30, 20}, 1.03), elbow = grid.camera.unproject({60, 20}, 1.03),
+             hand = grid.camera.unproject({60, 50}, 1.02);
   const Lengths lengths{norm(elbow - shoulder), norm(hand - elbow)};
   const Vec3 wrong = elbow + Vec3{-0.06, 0.06, 0.02};
   const ElbowFinder finder(grid, silhouette, lengths, params);
   const ElbowSeen seen = finder.between(shoulder, hand, {wrong, 0.2}, kBack);
   expect_near(seen.p, elbow, 0.025);
   EXPECT_GT(seen.score, 2);
-  EXPECT_LT(finder.between(shoulder, grid.camera.point({20, 60}, 1.02), {wrong, 0.2}, kBack).score, 0);  // nothing there
+  EXPECT_LT(finder.between(shoulder, grid.camera.unproject({20, 60}, 1.02), {wrong, 0.2}, kBack).score, 0);  // nothing there
 }
 
 // The upper arm was raised while nothing held the elbow: a right angle away from where it hung.
@@ -199,7 +199,7 @@ TEST(ElbowFinder, FindsAnElbowFarFromWhereItWas) {
   std::fill(grid.inside.begin(), grid.inside.end(), std::uint8_t{1});
   for (int y = 36; y < 45; ++y) fill_row(grid, y, 30, 65, 1.0F, silhouette.front);
   const Params params;
-  const Vec3 shoulder = grid.camera.point({30, 40}, 1.03), elbow = grid.camera.point({60, 40}, 1.03);
+  const Vec3 shoulder = grid.camera.unproject({30, 40}, 1.03), elbow = grid.camera.unproject({60, 40}, 1.03);
   const Lengths lengths{norm(elbow - shoulder), 0.25};
   const ElbowFinder finder(grid, silhouette, lengths, params);
   const JointPrior hanging{shoulder + Vec3{0.02, lengths.upper_m, 0}, 0.35};
@@ -222,7 +222,7 @@ TEST(ElbowFinder, AForearmLeadsOutOfThePicture) {
   const Params params;
   const Lengths lengths{0.3, 0.4};
   const ElbowFinder finder(grid, silhouette, lengths, params);
-  const Vec3 elbow = grid.camera.point({50, 25}, 1.03);
+  const Vec3 elbow = grid.camera.unproject({50, 25}, 1.03);
   const auto hand = finder.hand_outside(elbow, {elbow + Vec3{0.12, -0.36, 0}, 0.15});
   ASSERT_TRUE(hand);
   expect_near(*hand, elbow + Vec3{0, -0.4, 0}, 0.08);
@@ -235,7 +235,7 @@ TEST(ElbowFinder, AForearmLeadsOutOfThePicture) {
 TEST(ElbowFinder, TheElbowOfAHangingArmIsBehindIt) {
   Grid grid(geometry());
   const Silhouette silhouette(grid);
-  const Vec3 shoulder = grid.camera.point({40, 15}, 1), hand = grid.camera.point({40, 65}, 1);
+  const Vec3 shoulder = grid.camera.unproject({40, 15}, 1), hand = grid.camera.unproject({40, 65}, 1);
   const Lengths lengths{0.27, 0.25};
   const Params params;
   const ElbowFinder finder(grid, silhouette, lengths, params);
@@ -247,7 +247,7 @@ TEST(ElbowFinder, TheElbowOfAHangingArmIsBehindIt) {
 TEST(ElbowFinder, TheElbowOfAnArmHeldOutSags) {
   Grid grid(geometry());
   const Silhouette silhouette(grid);
-  const Vec3 shoulder = grid.camera.point({20, 40}, 1), hand = grid.camera.point({70, 40}, 1);
+  const Vec3 shoulder = grid.camera.unproject({20, 40}, 1), hand = grid.camera.unproject({70, 40}, 1);
   const Lengths lengths{0.27, 0.25};
   const Params params;
   const ElbowFinder finder(grid, silhouette, lengths, params);
@@ -258,8 +258,8 @@ TEST(HandFinder, AForearmThatGoesOnBehindSomethingIsCovered) {
   Grid grid(geometry());
   std::vector<std::uint8_t> front(static_cast<std::size_t>(grid.size()));
   for (int y = 30; y < 52; ++y) fill_row(grid, y, 66, 90, 0.8F, front);  // 66: where the skin ends
-  const Vec3 elbow = grid.camera.point({30, 40.5}, 1);
-  HandSeen hand{grid.camera.point({56, 40.5}, 1), 0.355};
+  const Vec3 elbow = grid.camera.unproject({30, 40.5}, 1);
+  HandSeen hand{grid.camera.unproject({56, 40.5}, 1), 0.355};
   EXPECT_EQ(covered_beyond(grid, front, elbow, hand, Params{}), 1);
   for (int y = 30; y < 52; ++y) fill_row(grid, y, 66, 90, 1.2F, front);  // the body behind the hand
   EXPECT_EQ(covered_beyond(grid, front, elbow, hand, Params{}), 0);
@@ -275,11 +275,11 @@ TEST(HandFinder, FarEndLessTheHandsLength) {
     if (silhouette.skin[static_cast<std::size_t>(i)]) cells.push_back(i);
   const Params params;
   HandFinder finder(grid);
-  const Vec3 elbow = grid.camera.point({30, 40.5}, 1);
+  const Vec3 elbow = grid.camera.unproject({30, 40.5}, 1);
   const auto seen = finder.find(grid, silhouette, cells, elbow, 0.25, 0.1, nullptr, params);
   ASSERT_TRUE(seen);
   EXPECT_NEAR(seen->tip_m, 0.35, 0.015);
-  expect_near(seen->p, behind(grid.camera.point({30 + 25, 40.5}, 1), params.hand_depth_m), 0.02);
+  expect_near(seen->p, behind(grid.camera.unproject({30 + 25, 40.5}, 1), params.hand_depth_m), 0.02);
   EXPECT_NEAR(seen->area_m2, 0.19 * 0.08, 0.002);
   EXPECT_DOUBLE_EQ(seen->skin_m2, seen->area_m2);
 
@@ -298,10 +298,10 @@ TEST(HandFinder, ABentHandBeginsAtTheSleeve) {
     if (silhouette.skin[static_cast<std::size_t>(i)]) cells.push_back(i);
   const Params params;
   const auto seen =
-      HandFinder(grid).find(grid, silhouette, cells, grid.camera.point({30, 40.5}, 1), 0.25, 0.1, nullptr, params);
+      HandFinder(grid).find(grid, silhouette, cells, grid.camera.unproject({30, 40.5}, 1), 0.25, 0.1, nullptr, params);
   ASSERT_TRUE(seen);
   EXPECT_NEAR(seen->tip_m, 0.335, 0.015);
-  expect_near(seen->p, behind(grid.camera.point({52 + 5, 40.5}, 1), params.hand_depth_m), 0.01);
+  expect_near(seen->p, behind(grid.camera.unproject({52 + 5, 40.5}, 1), params.hand_depth_m), 0.01);
 }
 
 // In the picture's plane: turns out of it move points by less than a pixel, and are left to the prediction.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/statistics.h"
 #include "trackers/arm/arm.h"
 
 namespace duo::arm {
@@ -21,7 +22,7 @@ std::optional<Vec3> limb_at(const Grid& grid, Vec2 at, double depth_m) {
   constexpr double kRadius = 3, kNear = 0.6;  // cells; quantile
   const auto z = disc_depth_m(grid, at, kRadius, kNear);
   if (!z) return {};
-  return behind(grid.camera.point(at, *z), depth_m);
+  return behind(grid.camera.unproject(at, *z), depth_m);
 }
 
 Result<void> check_lengths(const Lengths& lengths) {
@@ -49,15 +50,14 @@ std::optional<Vec3> shoulder_at(const Grid& grid, Vec2 at, double depth_m, std::
     if (dx * dx + dy * dy <= r * r && grid.known(i) && std::abs(grid.z(i) - *first) < kSurfaceM) scratch.push_back(grid.z(i));
   });
   if (scratch.size() < 5) return {};
-  const auto wanted = scratch.begin() + static_cast<std::ptrdiff_t>(kNear * static_cast<double>(scratch.size()));
-  std::nth_element(scratch.begin(), wanted, scratch.end());
-  return behind(grid.camera.point(at, *wanted), depth_m);
+  const double z_m = nth(scratch, static_cast<std::size_t>(kNear * static_cast<double>(scratch.size())));
+  return behind(grid.camera.unproject(at, z_m), depth_m);
 }
 
 Result<void> Arm::start(const Scene& scene, const Skeleton& arm, std::span<const Vec2, kParts> clicks_px) {
   const Grid& grid = scene.grid;
   depths_m_.reserve(static_cast<std::size_t>(grid.size()));
-  const auto at = [&](Part part) { return Pinhole::coarse(clicks_px[index_of(part)], grid.step); };
+  const auto at = [&](Part part) { return in_blocks(clicks_px[index_of(part)], grid.step); };
   const auto hand = limb_at(grid, at(Part::kHand), params_.hand_depth_m),
              elbow = limb_at(grid, at(Part::kElbow), params_.elbow_depth_m),
              shoulder = shoulder_at(grid, at(Part::kShoulder), params_.shoulder_depth_m, depths_m_);

@@ -2,7 +2,7 @@
 
 #include "core/check.h"
 #include "trackers/arm/arm.h"
-#include "trackers/arm/raw_left.h"
+#include "trackers/raw_left.h"
 
 namespace duo {
 namespace {

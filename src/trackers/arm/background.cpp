@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/statistics.h"
+
 namespace duo::arm {
 namespace {
 
-float& quantile(std::vector<float>& values, double share) {
-  const auto wanted = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), wanted, values.end());
-  return *wanted;
+float& nth_share(std::vector<float>& values, double share) {
+  return nth(values, static_cast<std::size_t>(share * static_cast<double>(values.size())));
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ void Background::guess_depth(const Grid& grid) {
       for (int v = std::max(0, y - 2); v <= std::min(h - 1, y + 2); v += 2)
         if (depth_known_[static_cast<std::size_t>(grid.at(u, v))])
           samples.push_back(d_px_[static_cast<std::size_t>(grid.at(u, v))]);
-    return samples.empty() ? 0.0F : quantile(samples, kFar);
+    return samples.empty() ? 0.0F : nth_share(samples, kFar);
   };
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x)
@@ -98,7 +98,7 @@ void Background::guess_color(const Grid& grid) {
       c[2].push_back(q.b);
     }
     if (c[0].size() < 3) return false;
-    out = {quantile(c[0], 0.5), quantile(c[1], 0.5), quantile(c[2], 0.5)};
+    out = {nth_share(c[0], 0.5), nth_share(c[1], 0.5), nth_share(c[2], 0.5)};
     return true;
   };
   for (int y = 0; y < grid.height; ++y)
@@ -162,12 +162,12 @@ void Background::observe_light(const Grid& grid) {
     samples_[2].push_back(now.b / std::max(kDark, then.b));
   }
   if (samples_[0].size() > kLeastSamples)
-    gain_ = {quantile(samples_[0], 0.5), quantile(samples_[1], 0.5), quantile(samples_[2], 0.5)};
+    gain_ = {nth_share(samples_[0], 0.5), nth_share(samples_[1], 0.5), nth_share(samples_[2], 0.5)};
 
   samples_[0].clear();
   for (int i = 0; i < grid.size(); i += kEvery)
     if (is_reference(grid, i)) samples_[0].push_back(color_step(grid, i));
-  const float noise = samples_[0].size() > kLeastSamples ? quantile(samples_[0], 0.5) : 3;
+  const float noise = samples_[0].size() > kLeastSamples ? nth_share(samples_[0], 0.5) : 3;
   color_limit_ = std::clamp(2.5F * noise, 4.0F, 10.0F);
 }
 

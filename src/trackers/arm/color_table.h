@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/targets.h"
 #include "trackers/arm/grid.h"
 
 namespace duo::arm {

@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <array>
 
-#include "trackers/arm/rotation.h"
+#include "core/rotation.h"
+#include "core/statistics.h"
 #include "trackers/arm/torso.h"
 
 namespace duo::arm {
@@ -25,12 +26,6 @@ struct Normal {
   }
 };
 
-double median(std::array<double, Torso::kMostPatches>& values, std::size_t n) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(n / 2);
-  std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(n));
-  return *middle;
-}
-
 /// The prediction shifted along the picture by the median of what the points say.
 Rigid3 shifted(const Pinhole& camera, const std::vector<TorsoPoint>& points, Rigid3 pose) {
   std::array<double, Torso::kMostPatches> du, dv;
@@ -42,7 +37,7 @@ Rigid3 shifted(const Pinhole& camera, const std::vector<TorsoPoint>& points, Rig
     dv[i] = points[i].at_px.y - q.y;
   }
   const double metre_per_px = pose.t_m.z / camera.focal_px;
-  pose.t_m = pose.t_m + metre_per_px * Vec3{median(du, n), median(dv, n), 0};
+  pose.t_m = pose.t_m + metre_per_px * Vec3{median(std::span(du).first(n)), median(std::span(dv).first(n)), 0};
   return pose;
 }
 

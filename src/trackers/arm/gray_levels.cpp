@@ -15,7 +15,7 @@ GrayLevel level_of(int width, int height) {
 
 GrayLevels::GrayLevels(const Rectified& rectified)
     : step(std::max(1, (rectified.size.width + kMostColumns / 2) / kMostColumns)) {
-  camera = Pinhole::of(rectified).coarser(step);
+  camera = in_blocks(rectified, step);
   full = level_of(rectified.size.width / step, rectified.size.height / step);
   half = level_of(full.width / 2, full.height / 2);
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "duoptic/frame.h"
-#include "trackers/arm/pinhole.h"
+#include "trackers/pinhole.h"
 
 namespace duo::arm {
 

@@ -5,22 +5,16 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "core/targets.h"
+#include "core/statistics.h"
 
 namespace duo::arm {
 namespace {
 
 constexpr int kMostStep = 16;
 
-/// The value at n / 2 in order.
-std::uint16_t upper_median(std::uint16_t* v, int n) {
-  std::nth_element(v, v + n / 2, v + n);
-  return v[n / 2];
-}
-
-/// The same of those of four that are known, the others being 0; 0 of none. In order the zeros come first, so that it is the
+/// The median of those of four that are known, the others being 0; 0 of none. In order the zeros come first, so that it is the
 /// third of all where three or four are known, else the last.
-int upper_median_known(int a, int b, int c, int d) {
+int median_known(int a, int b, int c, int d) {
   const int low_ab = std::min(a, b), high_ab = std::max(a, b), low_cd = std::min(c, d), high_cd = std::max(c, d);
   const int third = std::max(std::max(low_ab, low_cd), std::min(high_ab, high_cd));
   const int known = (a > 0) + (b > 0) + (c > 0) + (d > 0);
@@ -35,7 +29,7 @@ Grid::Grid(const Rectified& rectified)
     : step(std::clamp((rectified.size.width + kMostColumns / 2) / kMostColumns, 1, kMostStep)) {
   width = rectified.size.width / step;
   height = rectified.size.height / step;
-  camera = Pinhole::of(rectified).coarser(step);
+  camera = in_blocks(rectified, step);
   const auto n = static_cast<std::size_t>(size());
   z_m.resize(n);
   color.resize(n);
@@ -130,8 +124,7 @@ template <int kStep>
 int Grid::median_q4(View<const std::uint16_t> d_q4, int x, int y) const {
   if constexpr (kStep == 2) {  // what a VGA picture has
     const std::uint16_t *upper = d_q4.row(y) + x, *lower = d_q4.row(y + 1) + x;
-    return upper_median_known(known_or_zero(upper[0]), known_or_zero(upper[1]), known_or_zero(lower[0]),
-                              known_or_zero(lower[1]));
+    return median_known(known_or_zero(upper[0]), known_or_zero(upper[1]), known_or_zero(lower[0]), known_or_zero(lower[1]));
   }
   const int s = kStep > 0 ? kStep : step;
   std::array<std::uint16_t, kMostStep * kMostStep + 1> all;  // the last is written and not counted
@@ -141,7 +134,7 @@ int Grid::median_q4(View<const std::uint16_t> d_q4, int x, int y) const {
       all[static_cast<std::size_t>(known)] = *d;
       known += *d != 0 && *d != Disparity::kNone;
     }
-  return known == 0 || known * 4 < s * s ? 0 : upper_median(all.data(), known);
+  return known == 0 || known * 4 < s * s ? 0 : median(std::span(all).first(static_cast<std::size_t>(known)));
 }
 
 // Hexcone model (Smith, 1978), as in the stage hsv.
@@ -183,9 +176,7 @@ std::optional<double> disc_depth_m(const Grid& grid, Vec2 at, double radius, dou
           n < kMost)
         z[n++] = static_cast<float>(grid.z(grid.at(x + i, y + j)));
   if (n < 3) return {};
-  const auto wanted = z.begin() + static_cast<std::ptrdiff_t>((1 - nearness) * static_cast<double>(n - 1) + 0.5);
-  std::nth_element(z.begin(), wanted, z.begin() + static_cast<std::ptrdiff_t>(n));
-  return *wanted;
+  return nth(std::span(z).first(n), static_cast<std::size_t>((1 - nearness) * static_cast<double>(n - 1) + 0.5));
 }
 
 void keep_majority(const Grid& grid, std::vector<std::uint8_t>& mask, std::vector<std::uint8_t>& scratch, int least) {

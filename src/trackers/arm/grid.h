@@ -7,13 +7,15 @@
 #include <vector>
 
 #include "duoptic/frame.h"
-#include "trackers/arm/pinhole.h"
+#include "trackers/pinhole.h"
 
 namespace duo::arm {
 
 struct Rgb {
   float r = 0, g = 0, b = 0;
 };
+
+inline constexpr int kColorBins = 32 * 32;  // 32 of hue, of 32 of saturation each
 
 /// Shape   all maps width x height, row by row
 /// Memory  allocated by the constructor, reused by every build()
@@ -40,7 +42,7 @@ struct Grid {
     const double z = z_m[k];
     return {ray_x_[k] * z, ray_y_[k] * z, z};
   }
-  /// Its hue and saturation as a bin of core/targets.h; worked out when asked for, as few cells are.
+  /// Its hue and saturation as one of kColorBins; worked out when asked for, as few cells are.
   std::size_t color_bin(int i) const;
   /// Area that a cell covers on a surface seen head on.
   double area_m2(double z) const { return (z / camera.focal_px) * (z / camera.focal_px); }

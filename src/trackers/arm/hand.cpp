@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/statistics.h"
+
 namespace duo::arm {
 
 namespace {
@@ -63,11 +65,7 @@ double HandFinder::along(double tip_m, double centre_m, double palm_m) {
   return std::max(tip_m - centre_m, std::min(distance_within(kSleeve) + palm_m, tip_m - kFingersM));
 }
 
-double HandFinder::median_of_depths() {
-  const auto middle = depths_m_.begin() + static_cast<std::ptrdiff_t>(depths_m_.size() / 2);
-  std::nth_element(depths_m_.begin(), middle, depths_m_.end());
-  return *middle;
-}
+double HandFinder::median_of_depths() { return median(depths_m_); }
 
 /// Mean shift of a slab across the arm, `along_m` from the elbow; its depth is the median there.
 Vec3 HandFinder::centre(Vec3 elbow, Vec3 start, double along_m, double z_m) {

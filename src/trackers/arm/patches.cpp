@@ -103,7 +103,7 @@ double peak(double before, double at, double after) {
 
 std::optional<Patch> cut_patch(const GrayLevels& gray, Vec2 at_px) {
   Patch out;
-  if (!cut(gray.full, at_px, out.full) || !cut(gray.half, Pinhole::coarse(at_px, 2), out.half)) return {};
+  if (!cut(gray.full, at_px, out.full) || !cut(gray.half, in_blocks(at_px, 2), out.half)) return {};
   return out;
 }
 
@@ -111,7 +111,7 @@ std::optional<PatchMatch> find_patch(const GrayLevels& gray, const Patch& patch,
   reach = std::min(reach, kMostReach);
   constexpr double kNear = 0.002;  // a pixel further away must be better by this
   Square<2 * (kMostReach + 4) + 1> coarse;
-  coarse.sample(gray.half, Pinhole::coarse(near_px, 2), scale, reach + patch.half.kRadius);
+  coarse.sample(gray.half, in_blocks(near_px, 2), scale, reach + patch.half.kRadius);
   double best = -2;
   Vec2 step;
   for (int j = -reach; j <= reach; ++j) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trackers/arm/rotation.h"
+#include "core/rotation.h"
 
 namespace duo::arm {
 namespace {
@@ -12,7 +12,7 @@ constexpr double kDisc = 2.5;  // cells: radius of the disc that gives a patch i
 
 /// Where a place of the full gray level lies in the grid.
 Vec2 cell_at(const Grid& grid, const GrayLevels& gray, Vec2 at_px) {
-  return Pinhole::coarse(at_px, gray.camera.focal_px / grid.camera.focal_px);
+  return in_blocks(at_px, gray.camera.focal_px / grid.camera.focal_px);
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ void Torso::add_patches(const Grid& grid, const GrayLevels& gray, const std::vec
     auto patch = z ? cut_patch(gray, at) : std::nullopt;
     if (!patch) continue;
     patch->first_z_m = *z;
-    patch->p_in_torso_m = torso_from_rig * gray.camera.point(at, *z);
+    patch->p_in_torso_m = torso_from_rig * gray.camera.unproject(at, *z);
     patches_.push_back(*patch);
     taken[count++] = at;
   }
