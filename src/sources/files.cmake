@@ -3,8 +3,6 @@
 pkg_check_modules(LIBAV REQUIRED IMPORTED_TARGET libavformat libavcodec libswscale libavutil)
 target_link_libraries(duoptic PRIVATE PkgConfig::LIBAV)
 target_sources(duoptic PRIVATE
-  ${PROJECT_SOURCE_DIR}/src/sources/block_flow.cpp
-  ${PROJECT_SOURCE_DIR}/src/sources/in_step.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/files.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/gst_process.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/in_real_time.cpp
@@ -17,7 +15,6 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/video.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/with_skew.cpp)
 duoptic_test(sources/files ${PROJECT_SOURCE_DIR}/src/sources/files_test.cpp)
-duoptic_test(sources/in_step ${PROJECT_SOURCE_DIR}/src/sources/in_step_test.cpp)
 foreach(file camera clock_model decode device look modes system_calls)
   target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/camera/${file}.cpp)
 endforeach()
