@@ -90,7 +90,7 @@ class Clip final : public PairSource {
   int given_ = 0;
 };
 
-PipelineSetup setup_of(int threads = 1, bool many_at_once = false) {
+PipelineSetup pipeline_setup(int threads = 1, bool many_at_once = false) {
   PipelineSetup setup;
   setup.engine = "simd";
   setup.threads = threads;
@@ -130,12 +130,12 @@ void expect_same_maps(const Frame& want, const Frame& got, const std::string& wh
 }
 
 TEST(Pipeline, EachPairOfFilesOnceInOrderWithTheSameBits) {
-  const auto want = frames_of(setup_of());
+  const auto want = frames_of(pipeline_setup());
   ASSERT_EQ(want.size(), std::size_t{kClipPairs});
   for (std::size_t i = 0; i < want.size(); ++i) EXPECT_EQ(want[i]->sequence, i);
   for (const int threads : {1, 2, 3, 7})
     for (const bool many : {false, true}) {
-      const auto got = frames_of(setup_of(threads, many));
+      const auto got = frames_of(pipeline_setup(threads, many));
       ASSERT_EQ(got.size(), want.size());
       for (std::size_t i = 0; i < want.size(); ++i)
         expect_same_maps(*want[i], *got[i], std::to_string(threads) + " threads, frame " + std::to_string(i));
@@ -145,13 +145,13 @@ TEST(Pipeline, EachPairOfFilesOnceInOrderWithTheSameBits) {
 // Depth alone and tracking see the same frames: pairs that are not in step are put to one moment for both. Without that they
 // would be others.
 TEST(Pipeline, AlignsInTimeWithAndWithoutATracker) {
-  const auto depth = frames_of(setup_of());
-  PipelineSetup tracking = setup_of(2, true);
+  const auto depth = frames_of(pipeline_setup());
+  PipelineSetup tracking = pipeline_setup(2, true);
   tracking.tracker = "arm";
   const auto tracked = frames_of(std::move(tracking));
   ASSERT_EQ(depth.size(), tracked.size());
   const auto engine = *make_engine("simd", 1);
-  duo::Setup setup = setup_of().frames;
+  duo::Setup setup = pipeline_setup().frames;
   setup.size = kClipSize;
   setup.rig = clip_rig();
   ASSERT_TRUE(engine->prepare(setup));
@@ -168,7 +168,7 @@ TEST(Pipeline, AlignsInTimeWithAndWithoutATracker) {
 }
 
 TEST(Pipeline, PairsComeAsTheyWere) {
-  Pipeline pipeline = opened(setup_of());
+  Pipeline pipeline = opened(pipeline_setup());
   for (const Pair& want : clip()) {
     ASSERT_EQ(*pipeline.next(), Next::kPicture);
     const Pair& got = *pipeline.pair();
@@ -181,8 +181,8 @@ TEST(Pipeline, PairsComeAsTheyWere) {
 
 // What is passed over still says how things moved.
 TEST(Pipeline, FirstAndEveryChooseFrames) {
-  const auto all = frames_of(setup_of());
-  PipelineSetup setup = setup_of();
+  const auto all = frames_of(pipeline_setup());
+  PipelineSetup setup = pipeline_setup();
   setup.first = 2;
   setup.every = 3;
   Pipeline pipeline = opened(std::move(setup));
@@ -195,11 +195,11 @@ TEST(Pipeline, FirstAndEveryChooseFrames) {
 // The frame at hand and those that were already made ahead are made anew; a setup that is refused changes nothing.
 TEST(Pipeline, OtherParametersOnTheWay) {
   const std::vector<std::pair<std::string, double>> other = {{"levels", 1}};
-  PipelineSetup changed = setup_of();
+  PipelineSetup changed = pipeline_setup();
   changed.frames.parameters = other;
-  const auto before = frames_of(setup_of()), after = frames_of(std::move(changed));
+  const auto before = frames_of(pipeline_setup()), after = frames_of(std::move(changed));
   for (const bool many : {false, true}) {
-    Pipeline pipeline = opened(setup_of(3, many));
+    Pipeline pipeline = opened(pipeline_setup(3, many));
     for (std::size_t i = 0; i < before.size(); ++i) {
       ASSERT_EQ(*pipeline.next(), Next::kPicture);
       const std::string who = (many ? "many, frame " : "frame ") + std::to_string(i);
@@ -219,7 +219,7 @@ TEST(Pipeline, OtherParametersOnTheWay) {
 
 TEST(Pipeline, AllocatesNothingPerFrame) {
   for (const bool many : {false, true}) {
-    Pipeline pipeline = opened(setup_of(2, many), std::make_unique<Clip>(60));
+    Pipeline pipeline = opened(pipeline_setup(2, many), std::make_unique<Clip>(60));
     for (int i = 0; i < 20; ++i) ASSERT_EQ(*pipeline.next(), Next::kPicture);
     pipeline.wait();
     const long before = test::allocations;
@@ -249,7 +249,7 @@ class Counts final : public Sink {
 
 TEST(Pipeline, ASinkThatFailsIsGivenUpAndNumbersGoOnAfterARestart) {
   std::vector<std::int64_t> good, bad, ended;
-  Pipeline pipeline = opened(setup_of(), std::make_unique<Clip>(3));
+  Pipeline pipeline = opened(pipeline_setup(), std::make_unique<Clip>(3));
   ASSERT_TRUE(pipeline.add_sink("good", std::make_unique<Counts>(good)));
   ASSERT_TRUE(pipeline.add_sink("bad", std::make_unique<Counts>(bad, 1)));
   ASSERT_TRUE(pipeline.add_sink("ended", std::make_unique<Counts>(ended)));
@@ -276,7 +276,7 @@ TEST(Pipeline, OfALiveSourceTheNewestAndAllAreRecorded) {
   constexpr int kLive = 60;
   const test::TempFolder folder;
   Pipeline pipeline =
-      opened(setup_of(2, true), std::make_unique<Clip>(kLive, true, [](int) { std::this_thread::sleep_for(5ms); }));
+      opened(pipeline_setup(2, true), std::make_unique<Clip>(kLive, true, [](int) { std::this_thread::sleep_for(5ms); }));
   ASSERT_TRUE(pipeline.record(folder / "clip.mkv", {}));
   std::vector<std::uint64_t> numbers;
   while (true) {
@@ -316,7 +316,7 @@ TEST(Pipeline, PairsAloneForWhoRecords) {
 
 TEST(Pipeline, WhatASourceThrowsIsAnErrorAfterTheFramesBeforeIt) {
   for (const bool live : {false, true}) {
-    Pipeline pipeline = opened(setup_of(), std::make_unique<Clip>(kClipPairs, live, [](int i) {
+    Pipeline pipeline = opened(pipeline_setup(), std::make_unique<Clip>(kClipPairs, live, [](int i) {
                                  if (i == 3) throw std::bad_alloc();
                                  std::this_thread::sleep_for(20ms);
                                }));
@@ -335,7 +335,7 @@ TEST(Pipeline, MayBeLeftAtAnyTime) {
   std::shared_ptr<const Frame> kept;
   for (int frames = 0; frames < 4; ++frames)
     for (const bool live : {false, true}) {
-      Pipeline pipeline = opened(setup_of(3, true), std::make_unique<Clip>(kClipPairs, live));
+      Pipeline pipeline = opened(pipeline_setup(3, true), std::make_unique<Clip>(kClipPairs, live));
       for (int i = 0; i < frames && *pipeline.next() == Next::kPicture;) i += 1;
       kept = pipeline.frame();
     }
@@ -343,16 +343,16 @@ TEST(Pipeline, MayBeLeftAtAnyTime) {
 }
 
 TEST(Pipeline, RefusesWhatCannotWork) {
-  PipelineSetup setup = setup_of();
+  PipelineSetup setup = pipeline_setup();
   setup.engine = "guess";
   EXPECT_FALSE(Pipeline::open(std::make_unique<Clip>(), setup));
-  setup = setup_of();
+  setup = pipeline_setup();
   setup.tracker = "guess";
   EXPECT_FALSE(Pipeline::open(std::make_unique<Clip>(), setup));
-  setup = setup_of();
+  setup = pipeline_setup();
   setup.frames.matcher = "guess";
   EXPECT_FALSE(Pipeline::open(std::make_unique<Clip>(), setup));
-  Pipeline pipeline = opened(setup_of());
+  Pipeline pipeline = opened(pipeline_setup());
   EXPECT_FALSE(pipeline.record("/nowhere/clip.mkv", {}));
   EXPECT_NE(pipeline.recording().problem, "");
 }
