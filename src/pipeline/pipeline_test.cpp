@@ -275,8 +275,7 @@ TEST(Pipeline, ASinkThatFailsIsGivenUpAndNumbersGoOnAfterARestart) {
 TEST(Pipeline, OfALiveSourceTheNewestAndAllAreRecorded) {
   constexpr int kLive = 60;
   const test::TempFolder folder;
-  Pipeline pipeline =
-      opened(pipeline_setup(2, true), std::make_unique<Clip>(kLive, true, [](int) { std::this_thread::sleep_for(5ms); }));
+  Pipeline pipeline = opened(pipeline_setup(2, true), std::make_unique<Clip>(kLive, true));
   ASSERT_TRUE(pipeline.record(folder / "clip.mkv", {}));
   std::vector<std::uint64_t> numbers;
   while (true) {
