@@ -31,7 +31,8 @@ int main(int argc, char** argv) {
   if (!engine) return fail(engine.error());
   if (auto ready = (*engine)->prepare(setup); !ready) return fail(ready.error());
   (*engine)->submit(pair);
-  const auto& depth_mm = (*engine)->collect().depth_mm;
+  const auto frame = (*engine)->collect();
+  const auto& depth_mm = frame->depth_mm;
   const int mm = depth_mm.at(depth_mm.height() / 2, depth_mm.width() / 2);
   mm > 0 ? std::printf("%.2f m\n", mm / 1000.0) : std::printf("nothing known there\n");
 }

@@ -58,11 +58,13 @@ inline std::vector<Person> wandering_arm(int frames, unsigned seed, const Skelet
 }
 
 struct Instant {
-  Picture left;
-  Frame frame;
+  std::shared_ptr<Picture> shared_left = std::make_shared<Picture>();
+  std::shared_ptr<Frame> shared_frame = std::make_shared<Frame>();
+  Picture& left = *shared_left;
+  Frame& frame = *shared_frame;
   std::vector<Person> people;
   TrackedFrame tracked(std::int64_t number) const {
-    return {number, static_cast<double>(number) / 30, left, frame, people, {}};
+    return {number, static_cast<double>(number) / 30, shared_left, shared_frame, people, {}};
   }
 };
 

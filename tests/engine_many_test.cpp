@@ -41,22 +41,22 @@ TEST(Engine, ManyAtOnceAreThoseOfOneAfterTheOther) {
     for (const int threads : {1, 2, 3, 7}) {
       const auto many = prepared("simd", threads, setup);
       EXPECT_EQ(many->in_flight(), std::min(threads, 4));
-      const Frame* last = nullptr;
+      std::shared_ptr<const Frame> last;
       for (int i = 0, submitted = 0; i < kPairs; ++i) {
         for (; submitted < std::min(kPairs, i + many->in_flight()); ++submitted) {
           many->look_at(windows_of(submitted));
           many->submit(scenes[static_cast<std::size_t>(submitted)].pair);
         }
-        const Frame& got = many->collect();
+        const std::shared_ptr<const Frame> got = many->collect();
         const std::string who = std::string(choice.matcher) + " " + choice.preset + " " + std::to_string(threads) +
                                 " threads, frame " + std::to_string(i);
         if (last != nullptr) {
           one->look_at(windows_of(i - 1));
-          expect_same_maps(run(*one, scenes[static_cast<std::size_t>(i - 1)].pair), *last, who + ", the one before");
+          expect_same_maps(*run(*one, scenes[static_cast<std::size_t>(i - 1)].pair), *last, who + ", the one before");
         }
         one->look_at(windows_of(i));
-        expect_same_maps(run(*one, scenes[static_cast<std::size_t>(i)].pair), got, who);
-        last = &got;
+        expect_same_maps(*run(*one, scenes[static_cast<std::size_t>(i)].pair), *got, who);
+        last = got;
       }
     }
   }
@@ -75,7 +75,7 @@ TEST(Engine, ManyAtOnceEndInTheMiddle) {
   duo::Setup wrong = setup;
   wrong.matcher = "none";
   EXPECT_FALSE(engine->prepare(wrong));
-  EXPECT_EQ(engine->collect().disparity.d_q4.size(), engine->rectified()->size);
+  EXPECT_EQ(engine->collect()->disparity.d_q4.size(), engine->rectified()->size);
   engine->submit(scene.pair);
   EXPECT_TRUE(engine->prepare(setup));
   engine->submit(scene.pair);  // nobody collects it

@@ -19,7 +19,7 @@ inline std::unique_ptr<Engine> prepared(const char* name, int threads, const duo
   return std::move(*engine);
 }
 
-inline const Frame& run(Engine& engine, const Pair& pair) {
+inline std::shared_ptr<const Frame> run(Engine& engine, const Pair& pair) {
   engine.submit(pair);
   return engine.collect();
 }

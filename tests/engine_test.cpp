@@ -25,18 +25,18 @@ TEST(Engine, RefAndSimdAgreeOnRawPictures) {
   for (const Choice& choice : kChoices) {
     const duo::Setup setup = raw_setup(scene, choice);
     const auto reference = prepared("ref", 1, setup);
-    const Frame& want = run(*reference, scene.pair);
+    const std::shared_ptr<const Frame> want = run(*reference, scene.pair);
     test::each_target([&](const std::string& target) {
       for (const int threads : {1, 2}) {
         const auto simd = prepared("simd", threads, setup);
-        const Frame& got = run(*simd, scene.pair);
+        const std::shared_ptr<const Frame> got = run(*simd, scene.pair);
         const std::string who =
             std::string(choice.matcher) + " " + choice.preset + " " + target + " threads " + std::to_string(threads);
-        test::expect_same<std::uint8_t>(want.left, got.left, who + " left");
-        test::expect_same<std::uint8_t>(want.right, got.right, who + " right");
-        test::expect_same<std::uint16_t>(want.disparity.d_q4, got.disparity.d_q4, who + " disparity");
-        test::expect_same<std::uint8_t>(want.disparity.origin, got.disparity.origin, who + " origin");
-        test::expect_same<std::uint16_t>(want.depth_mm, got.depth_mm, who + " depth");
+        test::expect_same<std::uint8_t>(want->left, got->left, who + " left");
+        test::expect_same<std::uint8_t>(want->right, got->right, who + " right");
+        test::expect_same<std::uint16_t>(want->disparity.d_q4, got->disparity.d_q4, who + " disparity");
+        test::expect_same<std::uint8_t>(want->disparity.origin, got->disparity.origin, who + " origin");
+        test::expect_same<std::uint16_t>(want->depth_mm, got->depth_mm, who + " depth");
       }
     });
   }
@@ -84,18 +84,18 @@ TEST(Engine, WindowsHaveTheWholePicturesValues) {
       setup.wants.confidence = std::string_view(choice.matcher) == "sgm";
       const std::string what = std::string(choice.matcher) + " " + choice.preset + (fill ? " filled" : "");
       const auto reference = prepared("ref", 1, setup);
-      const Frame& whole = run(*reference, scene.pair);
+      const std::shared_ptr<const Frame> whole = run(*reference, scene.pair);
       for (const int threads : {1, 2}) {
         const auto simd = prepared("simd", threads, setup);
         for (const std::vector<Window>& windows : sets) {
           simd->look_at(windows);
-          expect_windows(windows, whole, run(*simd, scene.pair), what + " from row " + std::to_string(windows[0].y));
+          expect_windows(windows, *whole, *run(*simd, scene.pair), what + " from row " + std::to_string(windows[0].y));
         }
         simd->look_at({});
-        expect_windows({Window::all(whole.left.size())}, whole, run(*simd, scene.pair), what + ", whole again");
+        expect_windows({Window::all(whole->left.size())}, *whole, *run(*simd, scene.pair), what + ", whole again");
       }
       reference->look_at(sets[3]);
-      expect_windows(sets[3], whole, run(*reference, scene.pair), what + " ref");
+      expect_windows(sets[3], *whole, *run(*reference, scene.pair), what + " ref");
     }
 }
 
@@ -115,25 +115,47 @@ TEST(Engine, AllocatesNothingAfterTheFirstFrame) {
   EXPECT_GT(test::allocations - before, 0) << "the counter itself works";
 }
 
-// A frame that was collected may be worked on while the next pair is; the one after that may take its place.
-TEST(Engine, AFrameStaysWhileTheNextIsMade) {
+// However many frames are held, each stays as it was, after its engine, too; the memory of those that were let go is used
+// again.
+TEST(Engine, AFrameBelongsToWhoHoldsIt) {
   SyntheticSetup synthetic;
   synthetic.size = {160, 120};
   const SyntheticPair scene = render_synthetic(synthetic, 2);
-  Pair blank;
-  blank.left.pixels = Image<Rgb8>(synthetic.size);
-  blank.right.pixels = Image<Rgb8>(synthetic.size);
   for (const char* name : {"ref", "simd"}) {
-    const auto engine = prepared(name, 1, raw_setup(scene, kChoices[0]));
-    const Frame& first = run(*engine, scene.pair);
-    const Image<std::uint8_t> left = first.left.clone(), right = first.right.clone();
-    const Image<std::uint16_t> d_q4 = first.disparity.d_q4.clone(), depth_mm = first.depth_mm.clone();
-    const Frame& second = run(*engine, blank);
-    EXPECT_NE(&first, &second);
-    test::expect_same<std::uint8_t>(left, first.left, std::string(name) + " left");
-    test::expect_same<std::uint8_t>(right, first.right, std::string(name) + " right");
-    test::expect_same<std::uint16_t>(d_q4, first.disparity.d_q4, std::string(name) + " disparity");
-    test::expect_same<std::uint16_t>(depth_mm, first.depth_mm, std::string(name) + " depth");
+    auto engine = prepared(name, 1, raw_setup(scene, kChoices[0]));
+    const auto expect_frame = [&](const Frame& want, const Frame& got, int number) {
+      const std::string who = std::string(name) + ", frame " + std::to_string(number);
+      EXPECT_EQ(got.sequence, static_cast<std::uint64_t>(number)) << who;
+      test::expect_same<std::uint8_t>(want.left, got.left, who + " left");
+      test::expect_same<std::uint8_t>(want.right, got.right, who + " right");
+      test::expect_same<std::uint16_t>(want.disparity.d_q4, got.disparity.d_q4, who + " disparity");
+      test::expect_same<std::uint16_t>(want.depth_mm, got.depth_mm, who + " depth");
+    };
+    Pair pair;
+    pair.left.pixels = scene.pair.left.pixels.clone();
+    pair.right.pixels = scene.pair.right.pixels.clone();
+    std::vector<std::shared_ptr<const Frame>> held;
+    std::vector<std::unique_ptr<Engine>> others;  // the frames that each pair should have
+    std::vector<std::shared_ptr<const Frame>> wanted;
+    constexpr int kHeld = 1 + Engine::kSpareFrames + 2;  // two more than there are at first
+    for (int i = 0; i < kHeld; ++i) {
+      pair.sequence = static_cast<std::uint64_t>(i);
+      for (int x = 0; x < 8; ++x) pair.left.pixels.at(8 * i, x) = {255, 255, 255};
+      held.push_back(run(*engine, pair));
+      others.push_back(prepared(name, 1, raw_setup(scene, kChoices[0])));
+      wanted.push_back(run(*others.back(), pair));
+    }
+    for (int i = 0; i < kHeld; ++i) expect_frame(*wanted[static_cast<std::size_t>(i)], *held[static_cast<std::size_t>(i)], i);
+    held.erase(held.begin(), held.begin() + 2);
+    const long before = test::allocations;
+    for (int i = 0; i < 9; ++i) {
+      const auto frame = run(*engine, pair);
+      EXPECT_EQ(std::count(held.begin(), held.end(), frame), 0);
+    }
+    if (std::string(name) == "simd") EXPECT_EQ(test::allocations - before, 0);
+    engine.reset();
+    for (int i = 2; i < kHeld; ++i)
+      expect_frame(*wanted[static_cast<std::size_t>(i)], *held[static_cast<std::size_t>(i - 2)], i);
   }
 }
 
@@ -174,7 +196,7 @@ TEST(Engine, MeetsTheTruthOfTheSyntheticRoom) {
     setup.matcher = kChoices[i].matcher;
     setup.preset = kChoices[i].preset;
     const auto engine = prepared("simd", 2, setup);
-    scores[i] = score(scene, run(*engine, scene.pair).disparity);
+    scores[i] = score(scene, run(*engine, scene.pair)->disparity);
   }
   const auto& [sgm, paths8, pyramid, thesis] = scores;
   EXPECT_LT(sgm.bad, 0.1);
@@ -195,14 +217,14 @@ TEST(Engine, ConfidencePredictsError) {
   duo::Setup setup = asked;
   setup.wants.confidence = true;
   const auto engine = prepared("simd", 2, setup);
-  const Frame& frame = run(*engine, scene.pair);
+  const std::shared_ptr<const Frame> frame = run(*engine, scene.pair);
   std::vector<std::pair<int, double>> pixels;
   for (int y = 0; y < setup.size.height; ++y)
     for (int x = 0; x < setup.size.width; ++x) {
-      const std::uint16_t d = frame.disparity.d_q4.at(y, x);
-      EXPECT_EQ(frame.confidence.at(y, x) == 0, d == Disparity::kNone);
+      const std::uint16_t d = frame->disparity.d_q4.at(y, x);
+      EXPECT_EQ(frame->confidence.at(y, x) == 0, d == Disparity::kNone);
       if (d != Disparity::kNone && scene.disparity_px.at(y, x) > 0)
-        pixels.emplace_back(frame.confidence.at(y, x), std::abs(d / 16.0 - scene.disparity_px.at(y, x)) > 1.0);
+        pixels.emplace_back(frame->confidence.at(y, x), std::abs(d / 16.0 - scene.disparity_px.at(y, x)) > 1.0);
     }
   std::stable_sort(pixels.begin(), pixels.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   double before = 1;
@@ -226,14 +248,14 @@ TEST(Engine, RawDepthIsMetric) {
   setup.fill = false;
   setup.denoise = Denoise::kAuto;
   const auto engine = prepared("simd", 2, setup);
-  const Frame& frame = run(*engine, scene.pair);
+  const std::shared_ptr<const Frame> frame = run(*engine, scene.pair);
   const Rectified& geometry = *engine->rectified();
   std::vector<double> errors;
-  for (int y = 0; y < frame.depth_mm.height(); y += 4)
-    for (int x = 0; x < frame.depth_mm.width(); x += 4) {
-      if (frame.depth_mm.at(y, x) == 0) continue;
+  for (int y = 0; y < frame->depth_mm.height(); y += 4)
+    for (int x = 0; x < frame->depth_mm.width(); x += 4) {
+      if (frame->depth_mm.at(y, x) == 0) continue;
       // The point in the rig frame, turned to the raw left camera, through its lens to a raw pixel.
-      const double z = frame.depth_mm.at(y, x) / 1000.0;
+      const double z = frame->depth_mm.at(y, x) / 1000.0;
       const Vec3 in_rig = {(x - geometry.cx_px) * z / geometry.focal_px, (y - geometry.cy_px) * z / geometry.focal_px, z};
       const Vec3 p = transposed(geometry.rig_from_left) * in_rig;
       const Camera& camera = scene.rig.left;
@@ -297,7 +319,7 @@ TEST(Engine, SmallestPictures) {
     pair.left.pixels = Image<Rgb8>(size);
     pair.right.pixels = Image<Rgb8>(size);
     const auto engine = prepared("simd", 2, setup);
-    EXPECT_EQ(run(*engine, pair).disparity.d_q4.size(), size);
+    EXPECT_EQ(run(*engine, pair)->disparity.d_q4.size(), size);
   }
 }
 

@@ -32,7 +32,7 @@ duo::Setup setup_for(const SyntheticPair& scene) {
   return setup;
 }
 
-const Frame& run(Engine& engine, const Pair& pair) {
+std::shared_ptr<const Frame> run(Engine& engine, const Pair& pair) {
   engine.submit(pair);
   return engine.collect();
 }
@@ -90,7 +90,7 @@ TEST(VulkanEngine, AgreesWithTheReference) {
     EXPECT_STREQ(vulkan->name(), "vulkan");
     EXPECT_FALSE(vulkan->device().empty());
     for (const SyntheticPair* pair : {&scene, &other, &scene})
-      expect_same_frame(run(*reference, pair->pair), run(*vulkan, pair->pair), each.name);
+      expect_same_frame(*run(*reference, pair->pair), *run(*vulkan, pair->pair), each.name);
     EXPECT_EQ(vulkan->take_event(), "");
   }
 }
@@ -103,12 +103,12 @@ TEST(VulkanEngine, KeepsPairsInFlightInOrder) {
   ASSERT_EQ(vulkan->in_flight(), 2);
   vulkan->submit(scenes[0].pair);
   vulkan->submit(scenes[1].pair);
-  const Frame& first = vulkan->collect();
+  const std::shared_ptr<const Frame> first = vulkan->collect();
   vulkan->submit(scenes[2].pair);
-  const Frame& second = vulkan->collect();
-  expect_same_frame(run(*reference, scenes[0].pair), first, "first, after the second was made");
-  expect_same_frame(run(*reference, scenes[1].pair), second, "second");
-  expect_same_frame(run(*reference, scenes[2].pair), vulkan->collect(), "third");
+  const std::shared_ptr<const Frame> second = vulkan->collect();
+  expect_same_frame(*run(*reference, scenes[0].pair), *first, "first, after the second was made");
+  expect_same_frame(*run(*reference, scenes[1].pair), *second, "second");
+  expect_same_frame(*run(*reference, scenes[2].pair), *vulkan->collect(), "third");
 }
 
 // Windows belong to the pair submitted after them, also while another one is in flight.
@@ -123,9 +123,9 @@ TEST(VulkanEngine, CutsTheWindowsOfEachPair) {
   vulkan->look_at({});
   vulkan->submit(scenes[1].pair);
   reference->look_at(window);
-  expect_same_frame(run(*reference, scenes[0].pair), vulkan->collect(), "in a window");
+  expect_same_frame(*run(*reference, scenes[0].pair), *vulkan->collect(), "in a window");
   reference->look_at({});
-  expect_same_frame(run(*reference, scenes[1].pair), vulkan->collect(), "whole");
+  expect_same_frame(*run(*reference, scenes[1].pair), *vulkan->collect(), "whole");
 }
 
 TEST(VulkanEngine, SendsOnlyWhatIsWanted) {
@@ -134,14 +134,14 @@ TEST(VulkanEngine, SendsOnlyWhatIsWanted) {
   setup.wants = {.views = false, .disparity = false};
   OwnDevice device;
   const auto vulkan = prepared(device.engine(), setup);
-  const Frame& none = run(*vulkan, scene.pair);
-  EXPECT_TRUE(none.left.empty() && none.right.empty() && none.left_inside.empty() && none.disparity.d_q4.empty());
+  const std::shared_ptr<const Frame> none = run(*vulkan, scene.pair);
+  EXPECT_TRUE(none->left.empty() && none->right.empty() && none->left_inside.empty() && none->disparity.d_q4.empty());
   setup.wants.disparity = true;
   ASSERT_TRUE(vulkan->prepare(setup));
   const auto reference = prepared(make_ref_engine(), setup);
-  const Frame& some = run(*vulkan, scene.pair);
-  EXPECT_TRUE(some.left.empty());
-  test::expect_same<std::uint16_t>(run(*reference, scene.pair).disparity.d_q4, some.disparity.d_q4, "disparity alone");
+  const std::shared_ptr<const Frame> some = run(*vulkan, scene.pair);
+  EXPECT_TRUE(some->left.empty());
+  test::expect_same<std::uint16_t>(run(*reference, scene.pair)->disparity.d_q4, some->disparity.d_q4, "disparity alone");
 }
 
 TEST(VulkanEngine, RefusesWhatCannotWorkAndStaysAsItWas) {
@@ -153,7 +153,7 @@ TEST(VulkanEngine, RefusesWhatCannotWorkAndStaysAsItWas) {
   wrong.max_disparity = 0;
   EXPECT_FALSE(vulkan->prepare(wrong));
   const auto reference = prepared(make_ref_engine(), setup);
-  expect_same_frame(run(*reference, scene.pair), run(*vulkan, scene.pair), "after a refused setup");
+  expect_same_frame(*run(*reference, scene.pair), *run(*vulkan, scene.pair), "after a refused setup");
 }
 
 TEST(VulkanEngine, LeavesTheCpuFree) {
@@ -191,9 +191,9 @@ void expect_cpu_goes_on(void (*injure)(), const char* how) {
   const auto vulkan = prepared(device.engine(), setup);
   const std::unique_ptr<Engine> references[] = {prepared(make_ref_engine(), setup), prepared(make_ref_engine(), setup)};
   std::string events;
-  const Frame* wanted[] = {&run(*references[0], scenes[0].pair), &run(*references[1], scenes[1].pair)};
+  const std::shared_ptr<const Frame> wanted[] = {run(*references[0], scenes[0].pair), run(*references[1], scenes[1].pair)};
   for (int i = 0; i < 6; ++i) {
-    expect_same_frame(*wanted[i % 2], run(*vulkan, scenes[i % 2].pair), std::string(how) + ", frame " + std::to_string(i));
+    expect_same_frame(*wanted[i % 2], *run(*vulkan, scenes[i % 2].pair), std::string(how) + ", frame " + std::to_string(i));
     events += vulkan->take_event();
   }
   EXPECT_NE(events.find("the CPU goes on"), std::string::npos) << how << ": " << events;
@@ -221,13 +221,13 @@ TEST(VulkanEngine, TriesTheDeviceAgainAtTheNextSetup) {
   EXPECT_NE(vulkan->take_event().find("the CPU goes on"), std::string::npos);
   EXPECT_STREQ(vulkan->name(), "simd");
   EXPECT_EQ(vulkan->device(), "");
-  expect_same_frame(run(*reference, scene.pair), run(*vulkan, scene.pair), "on the CPU");
+  expect_same_frame(*run(*reference, scene.pair), *run(*vulkan, scene.pair), "on the CPU");
   calls.allocations_left = 1 << 30;
   ASSERT_TRUE(vulkan->prepare(setup));
   EXPECT_EQ(vulkan->take_event(), "");
   EXPECT_STREQ(vulkan->name(), "vulkan");
   EXPECT_FALSE(vulkan->device().empty());
-  expect_same_frame(run(*reference, scene.pair), run(*vulkan, scene.pair), "on the device again");
+  expect_same_frame(*run(*reference, scene.pair), *run(*vulkan, scene.pair), "on the device again");
 }
 
 TEST(VulkanEngine, PairsInFlightSurviveTheLoss) {
@@ -239,8 +239,8 @@ TEST(VulkanEngine, PairsInFlightSurviveTheLoss) {
   calls.fail_wait_at = calls.waits;
   vulkan->submit(scenes[0].pair);
   vulkan->submit(scenes[1].pair);
-  expect_same_frame(run(*reference, scenes[0].pair), vulkan->collect(), "the pair it was lost on");
-  expect_same_frame(run(*reference, scenes[1].pair), vulkan->collect(), "the pair behind");
+  expect_same_frame(*run(*reference, scenes[0].pair), *vulkan->collect(), "the pair it was lost on");
+  expect_same_frame(*run(*reference, scenes[1].pair), *vulkan->collect(), "the pair behind");
 }
 
 // Nothing that the device may still write to is freed: validation would speak, and so would the software driver.
@@ -253,8 +253,8 @@ TEST(VulkanEngine, CpuGoesOnWhenTheDeviceHangs) {
   calls.hang_at = calls.waits;
   vulkan->submit(scenes[0].pair);
   vulkan->submit(scenes[1].pair);
-  expect_same_frame(run(*reference, scenes[0].pair), vulkan->collect(), "the pair it hung on");
-  expect_same_frame(run(*reference, scenes[1].pair), vulkan->collect(), "the pair behind");
+  expect_same_frame(*run(*reference, scenes[0].pair), *vulkan->collect(), "the pair it hung on");
+  expect_same_frame(*run(*reference, scenes[1].pair), *vulkan->collect(), "the pair behind");
   EXPECT_EQ(vulkan->device(), "");
 }
 

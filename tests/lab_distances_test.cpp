@@ -65,9 +65,9 @@ void sample(const Pair& pair, const RowOffsets& rows, const std::string& folder,
   const auto engine = std::move(*make_engine("simd", 2));
   ASSERT_TRUE(engine->prepare(setup));
   engine->submit(pair);
-  const Frame& frame = engine->collect();
+  const std::shared_ptr<const Frame> frame = engine->collect();
   for (const Torso& torso : kTorsos)
-    if (torso.folder == folder) out.push_back({&torso, torso_px(frame.disparity.d_q4, torso)});
+    if (torso.folder == folder) out.push_back({&torso, torso_px(frame->disparity.d_q4, torso)});
 }
 
 /// By matcher.

@@ -36,7 +36,7 @@ struct Moment {
     set(kShoulder, {9, 9, 9}, 1.5, 0, 9, 9, JointState::kLost);
   }
   TrackedFrame tracked(std::int64_t number) const {
-    return {number, static_cast<double>(number) / 30, left, frame, people, {}};
+    return {number, static_cast<double>(number) / 30, shared_left, shared_frame, people, {}};
   }
   void set(std::size_t j, Vec3 p_m, double sigma_m, double confidence, double u_px, double v_px, JointState state) {
     people[0].joints[j] = {.p_in_rig_m = p_m,
@@ -47,8 +47,10 @@ struct Moment {
                            .v_px = v_px};
   }
 
-  Picture left;
-  Frame frame;
+  std::shared_ptr<Picture> shared_left = std::make_shared<Picture>();
+  std::shared_ptr<Frame> shared_frame = std::make_shared<Frame>();
+  Picture& left = *shared_left;
+  Frame& frame = *shared_frame;
   std::vector<Person> people;
 };
 

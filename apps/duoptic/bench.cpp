@@ -118,10 +118,10 @@ Result<Table> measure(const SyntheticPair& input, int threads, const Options& op
   }
   std::vector<PeerMatcher> peers;
   const auto run_ours = [&](std::size_t i) {
-    const Frame* frame = nullptr;
+    std::shared_ptr<const Frame> frame;
     const Times whole = timed([&] {
       ours[i].engine->submit(input.pair);
-      frame = &ours[i].engine->collect();
+      frame = ours[i].engine->collect();
     });
     add_run(table.ours[i], *frame, whole);
     if (peers.empty())

@@ -78,8 +78,8 @@ double frames_per_s(Engine& engine, Tracker* tracker, const Pair& pair, int fram
   int submitted = 0;
   for (int collected = 0; collected < frames; ++collected) {
     for (; submitted < std::min(frames, collected + engine.in_flight()); ++submitted) engine.submit(pair);
-    const Frame& frame = engine.collect();
-    if (tracker != nullptr) tracker->track(frame);
+    const auto frame = engine.collect();
+    if (tracker != nullptr) tracker->track(*frame);
   }
   return frames * 1e3 / (clock_ms(CLOCK_MONOTONIC) - begin_ms);
 }
@@ -88,25 +88,25 @@ Result<Run> measure(Engine& engine, const Setup& setup, const Pair& pair, int re
   Run run;
   run.name = std::move(name);
   DUO_TRY(engine.prepare(setup));
-  const auto once = [&]() -> const Frame& {
+  const auto once = [&] {
     engine.submit(pair);
     return engine.collect();
   };
-  const Frame& first = once();
-  run.bytes_down = bytes_of(first);
+  const auto first = once();
+  run.bytes_down = bytes_of(*first);
   std::unique_ptr<Tracker> tracker;
   if (setup.wants.on_device) {
-    DUO_TRY_ASSIGN(tracker, tracker_on(first, engine, *setup.rig));
+    DUO_TRY_ASSIGN(tracker, tracker_on(*first, engine, *setup.rig));
   }
   run.bytes_up = 2 * bytes_of(pair.left.pixels);
   std::vector<double> cpu_ms;
   for (int i = 0; i < repeat; ++i) {
     const double wall = clock_ms(CLOCK_MONOTONIC), cpu = clock_ms(CLOCK_THREAD_CPUTIME_ID);
-    const Frame& frame = once();
-    if (tracker != nullptr) tracker->track(frame);
+    const auto frame = once();
+    if (tracker != nullptr) tracker->track(*frame);
     run.latency_ms.push_back(clock_ms(CLOCK_MONOTONIC) - wall);
     cpu_ms.push_back(clock_ms(CLOCK_THREAD_CPUTIME_ID) - cpu);
-    add_stages(frame, tracker != nullptr ? tracker->stages() : std::span<const StageTime>(), run);
+    add_stages(*frame, tracker != nullptr ? tracker->stages() : std::span<const StageTime>(), run);
   }
   run.own_cpu_ms = median(cpu_ms);
   run.frames_per_s = frames_per_s(engine, tracker.get(), pair, repeat);

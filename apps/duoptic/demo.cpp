@@ -38,7 +38,7 @@ Image<Rgb8> side_by_side(std::initializer_list<View<const Rgb8>> pictures) {
 
 struct Run {
   std::unique_ptr<Engine> engine;
-  const Frame* frame = nullptr;
+  std::shared_ptr<const Frame> frame;
   Times times;
 };
 
@@ -57,7 +57,7 @@ Result<Run> run_on(const SyntheticPair& input, bool with_rig, const EngineOption
   for (int i = 0; i < kRuns; ++i)
     runs.push_back(timed([&] {
       out.engine->submit(input.pair);
-      out.frame = &out.engine->collect();
+      out.frame = out.engine->collect();
     }));
   runs.erase(runs.begin());  // warms caches
   out.times = median(runs);
@@ -94,7 +94,7 @@ Result<void> track_person(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(const ClipTruth truth, load_clip(clip));
   std::vector<eval_clip::ClipScore> scores;
   for (const char* tracker : {"arm", "thesis"}) {
-    ArmOptions arm;
+    TrackingOptions arm;
     arm.engine = options.engine;
     arm.tracker = tracker;
     const std::string video = (std::filesystem::path(options.folder) / fmt::format("{}.mp4", tracker)).string();

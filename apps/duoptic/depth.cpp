@@ -9,6 +9,7 @@
 
 #include "command.h"
 #include "duoptic/calibrate.h"
+#include "duoptic/pipeline.h"
 #include "frame_files.h"
 #include "input.h"
 #include "interrupt.h"
@@ -57,8 +58,9 @@ Window parse_window(const std::string& text) {
   return window;
 }
 
-/// Tells the engine; each window has to have a part in the picture, or who asked is mistaken.
-Result<void> look_at(Engine& engine, const Options& options, Size size) {
+/// Each window has to have a part in the picture, or who asked is mistaken.
+Result<void> look_at(Pipeline& pipeline, const Options& options) {
+  const Size size = pipeline.rectified() ? pipeline.rectified()->size : pipeline.setup().size;
   std::vector<Window> windows;
   for (const std::string& text : options.windows) {
     windows.push_back(parse_window(text));
@@ -67,7 +69,7 @@ Result<void> look_at(Engine& engine, const Options& options, Size size) {
                    fmt::format("look at --window {}: it lies outside the rectified left picture, which is {}x{}", text,
                                size.width, size.height)};
   }
-  engine.look_at(windows);
+  pipeline.look_at(windows);
   return {};
 }
 
@@ -75,41 +77,31 @@ struct Summary {
   std::vector<double> ms;
   std::vector<std::string> files;
   double coverage_sum = 0;
-  std::int64_t read = 0;
   Next end = Next::kEnd;
-  std::string warning;
 };
 
-Result<Summary> process(PairSource& pairs, Engine& engine, const Options& options, const CLI::App& app) {
+Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::App& app) {
   Summary summary;
-  Progress progress(app, pairs.count(), options.quiet);
+  Progress progress(app, pipeline.count(), options.quiet);
   std::optional<Interrupt> interrupt;
-  if (pairs.live()) interrupt.emplace();
-  for (Pair pair;; ++summary.read) {
-    do {
-      DUO_TRY_ASSIGN(summary.end, pairs.next(pair));
-    } while (summary.end == Next::kNothing && !Interrupt::asked());
-    if (Interrupt::asked()) break;
+  if (pipeline.live()) interrupt.emplace();
+  while (!Interrupt::asked()) {
+    DUO_TRY_ASSIGN(summary.end, pipeline.next());
+    if (summary.end == Next::kNothing) continue;
     if (summary.end != Next::kPicture) break;
-    if (summary.read % options.every != 0) continue;
-    const Frame* frame = nullptr;
-    const Times times = timed([&] {
-      engine.submit(pair);
-      frame = &engine.collect();
-    });
-    if (const std::string event = engine.take_event(); !event.empty()) say(app, "warning: " + event);
-    summary.ms.push_back(times.wall_ms);
-    summary.coverage_sum += coverage(*frame);
+    if (const std::string event = pipeline.event(); !event.empty()) say(app, "warning: " + event);
+    summary.ms.push_back(pipeline.times().engine_ms);
+    summary.coverage_sum += coverage(*pipeline.frame());
 
+    const std::uint64_t number = pipeline.pair()->sequence;
     const fs::path folder =
-        pairs.still() ? fs::path(options.folder) : fs::path(options.folder) / fmt::format("frame_{:06}", summary.read);
+        pipeline.still() ? fs::path(options.folder) : fs::path(options.folder) / fmt::format("frame_{:06}", number);
     DUO_TRY_ASSIGN(OutputSet out, OutputSet::open(folder));
-    DUO_TRY(write_frame(*frame, engine.rectified(), out));
+    DUO_TRY(write_frame(*pipeline.frame(), pipeline.rectified(), out));
     DUO_TRY(out.publish());
     for (std::string& path : out.paths()) summary.files.push_back(std::move(path));
-    progress.frame(summary.read + 1);
+    progress.frame(static_cast<std::int64_t>(number) + 1);
   }
-  summary.warning = pairs.warning();
   return summary;
 }
 
@@ -123,16 +115,17 @@ nlohmann::json json_of(const std::optional<RowOffsets>& rows) {
           {"columns_px", rows->lens ? rows->lens->columns_px : 0.0}};
 }
 
-void print(const Summary& summary, const Engine& engine, const Options& options, const Setup& setup) {
+void print(const Summary& summary, const Pipeline& pipeline, const Options& options) {
+  const Setup& setup = pipeline.setup();
   const double frames = static_cast<double>(summary.ms.size()), ms = median(summary.ms);
   const double percent = frames > 0 ? 100 * summary.coverage_sum / frames : 0;
   if (options.json) {
     const nlohmann::json out = {{"frames", summary.ms.size()},
-                                {"pairs_read", summary.read},
+                                {"pairs_read", pipeline.read()},
                                 {"width", setup.size.width},
                                 {"height", setup.size.height},
-                                {"engine", engine.name()},
-                                {"device", engine.device()},
+                                {"engine", pipeline.header().engine},
+                                {"device", pipeline.header().device},
                                 {"threads", options.engine.threads},
                                 {"matcher", options.engine.matcher},
                                 {"preset", options.engine.preset},
@@ -141,7 +134,7 @@ void print(const Summary& summary, const Engine& engine, const Options& options,
                                 {"coverage_percent", percent},
                                 {"rows", json_of(setup.rows)},
                                 {"cut", summary.end == Next::kCut},
-                                {"warning", summary.warning},
+                                {"warning", pipeline.warning()},
                                 {"files", summary.files}};
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else if (!options.quiet) {
@@ -157,7 +150,7 @@ void print(const Summary& summary, const Engine& engine, const Options& options,
           setup.rows->lens->columns_px);
     fmt::print(
         "{} frame{} of {}x{}, {:.1f} ms each ({}, {}, {} threads), {:.0f} % of the pixels have a disparity; written to {}\n",
-        summary.ms.size(), summary.ms.size() == 1 ? "" : "s", setup.size.width, setup.size.height, ms, engine.name(),
+        summary.ms.size(), summary.ms.size() == 1 ? "" : "s", setup.size.width, setup.size.height, ms, pipeline.header().engine,
         options.engine.preset, options.engine.threads, percent, options.folder);
   }
 }
@@ -171,30 +164,29 @@ Result<std::optional<RowOffsets>> rows_of(const Options& options, const Setup& s
 }
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
-  Setup setup = options.engine.setup();
+  PipelineSetup setup{.engine = options.engine.engine, .threads = options.engine.threads, .every = options.every};
+  Setup& frames = setup.frames = options.engine.setup();
   if (!options.rig.empty()) {
-    DUO_TRY_ASSIGN(setup.rig, load_rig(options.rig));
+    DUO_TRY_ASSIGN(frames.rig, load_rig(options.rig));
   }
-  DUO_TRY_ASSIGN(const Input input, open_input(options.left, options.right, setup.rig));
-  setup.rig = input.rig;
-  if (options.near_m > 0 && !setup.rig) throw CLI::RequiredError("--rig");
-  setup.size = input.pairs->size();
-  setup.max_disparity = options.max_disparity;
-  if (setup.rig) {
+  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, frames.rig));
+  frames.rig = input.rig;
+  if (options.near_m > 0 && !frames.rig) throw CLI::RequiredError("--rig");
+  frames.max_disparity = options.max_disparity;
+  if (frames.rig) {
     if (options.near_m > 0) {
-      DUO_TRY_ASSIGN(const RigDescription can, describe_rig(*setup.rig, options.near_m));
-      setup.max_disparity = can.max_disparity;
+      DUO_TRY_ASSIGN(const RigDescription can, describe_rig(*frames.rig, options.near_m));
+      frames.max_disparity = can.max_disparity;
     }
-    setup.wants = {.color = true, .depth = true};
+    frames.wants = {.color = true, .depth = true};
   }
-  setup.wants.confidence = options.confidence;
-  DUO_TRY_ASSIGN(setup.rows, rows_of(options, setup, input.pairs->live()));
-  DUO_TRY_ASSIGN(const auto engine, make_engine(options.engine.engine, options.engine.threads));
-  DUO_TRY(engine->prepare(setup));
-  DUO_TRY(look_at(*engine, options, engine->rectified() ? engine->rectified()->size : setup.size));
-  DUO_TRY_ASSIGN(const Summary summary, process(*input.pairs, *engine, options, app));
-  print(summary, *engine, options, setup);
-  if (!summary.warning.empty()) say(app, "warning: " + summary.warning);
+  frames.wants.confidence = options.confidence;
+  DUO_TRY_ASSIGN(frames.rows, rows_of(options, frames, input.pairs->live()));
+  DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
+  DUO_TRY(look_at(pipeline, options));
+  DUO_TRY_ASSIGN(const Summary summary, process(pipeline, options, app));
+  print(summary, pipeline, options);
+  if (const std::string warning = pipeline.warning(); !warning.empty()) say(app, "warning: " + warning);
   return summary.end == Next::kCut ? Exit::kCut : Exit::kOk;
 }
 

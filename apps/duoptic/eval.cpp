@@ -68,10 +68,10 @@ Result<Image<float>> match(const Scene& scene, const EngineOptions& options, boo
     if (rows.matter()) setup.rows = rows;
   }
   DUO_TRY(engine->prepare(setup));
-  const Frame* frame = nullptr;
+  std::shared_ptr<const Frame> frame;
   const auto once = [&] {
     engine->submit(scene.pair);
-    frame = &engine->collect();
+    frame = engine->collect();
   };
   once();  // warm caches
   ms = timed(once).wall_ms;

@@ -39,7 +39,7 @@ struct Options {
   std::vector<std::string> joints;
   double jitter_px = 0;
   bool compare = false, json = false;
-  ArmOptions arm;
+  TrackingOptions arm;
 };
 
 /// A click on each joint, moved by `jitter_px` in a direction of its own, the same in every run; the ends of limbs come first.
@@ -97,7 +97,7 @@ Result<Wanted> wanted(const Tracker& tracker, const ClipTruth& truth, std::vecto
 
 }  // namespace
 
-Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, const Rig& rig, const ArmOptions& options,
+Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, const Rig& rig, const TrackingOptions& options,
                              const std::vector<JointId>& joints, double jitter_px, const std::string& video) {
   DUO_TRY_ASSIGN(const auto tracker, make_tracker(options.tracker));
   DUO_TRY_ASSIGN(const Wanted want, wanted(*tracker, truth, joints));
@@ -109,13 +109,15 @@ Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, con
     selections.push_back(clicks(*skeleton, truth.frames[static_cast<std::size_t>(score.first)], jitter_px, random));
   const std::string left = (folder / "left.avi").string(), right = (folder / "right.avi").string();
   DUO_TRY_ASSIGN(Input input, open_input(left, right, rig, truth.skew_ms));
-  ArmOptions arm = options;
-  arm.all_maps = true;  // and not in bulk: other frames would be made while a frame is scored
-  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(input), arm, score.first));
-  const Rectified& rectified = run.header().rectified;
-  std::unique_ptr<Sink> sink;
+  TrackingOptions tracking = options;
+  tracking.all_maps = true;  // and not in bulk: other frames would be made while a frame is scored
+  PipelineSetup setup = tracking.setup(input);
+  setup.first = score.first;
+  DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
+  const Rectified& rectified = pipeline.header().rectified;
   if (!video.empty()) {
-    DUO_TRY_ASSIGN(sink, make_panel_video(video, run.header(), score.note));
+    DUO_TRY_ASSIGN(auto sink, make_panel_video(video, pipeline.header(), score.note));
+    DUO_TRY(pipeline.add_sink(video, std::move(sink)));
   }
   std::vector<std::vector<JointSample>> samples(want.joints.size());
   DepthTally depth;
@@ -123,32 +125,31 @@ Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, con
   for (std::int64_t i = score.first; i < static_cast<std::int64_t>(truth.frames.size()); ++i) {
     const FrameTruth& frame = truth.frames[static_cast<std::size_t>(i)];
     Result<Next> next = Next::kEnd;
-    Result<std::span<const Person>> people = std::span<const Person>();
+    Result<void> selected;
     busy_ms += timed([&] {
-                 next = run.next();
+                 next = pipeline.next();
                  if (!next || *next != Next::kPicture) return;
-                 const bool selects = i == score.first && !selections.empty();
-                 people = selects ? run.select(selections) : Result<std::span<const Person>>(run.track());
-                 run.frames().wait();
+                 if (i == score.first && !selections.empty()) selected = pipeline.select(selections);
+                 pipeline.wait();
                }).wall_ms;
     if (!next) return next.error();
-    if (!people) return people.error();
+    if (!selected) return selected.error();
     if (*next != Next::kPicture)
       return Error{ErrorCode::kBadInput, fmt::format("cannot evaluate {}: its videos end before frame {} of {} in truth.json",
                                                      folder.string(), i, truth.frames.size())};
     for (std::size_t j = 0; j < want.joints.size(); ++j) {
       const JointId id = want.joints[j];
-      samples[j].push_back(sample(*frame[static_cast<std::size_t>(id)], id, *people, rectified.rig_from_left));
+      samples[j].push_back(sample(*frame[static_cast<std::size_t>(id)], id, pipeline.people(), rectified.rig_from_left));
     }
     DUO_TRY_ASSIGN(const DepthTruth depth_truth, load_depth(folder, i));
-    depth.add(run.frame(), rectified, truth.rig.left, depth_truth);
-    if (sink) DUO_TRY(sink->write(run.tracked(*people)));
+    depth.add(*pipeline.frame(), rectified, truth.rig.left, depth_truth);
+    DUO_TRY(pipeline.write());
     ++score.frames;
   }
   score.fps = 1000 * static_cast<double>(score.frames) / busy_ms;
   for (std::size_t j = 0; j < want.joints.size(); ++j) score.joints.emplace_back(want.joints[j], score_joint(samples[j]));
   score.depth = depth.score();
-  if (sink) DUO_TRY(sink->finish());
+  DUO_TRY(pipeline.finish_sinks());
   return score;
 }
 

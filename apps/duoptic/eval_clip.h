@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "arm_run.h"
 #include "clip_score.h"
+#include "tracking_options.h"
 
 namespace duo::app::eval_clip {
 
@@ -27,7 +27,7 @@ struct ClipScore {
 /// clicked, each click moved by `jitter_px`, and scores `joints`; none: those of the arm that moves, or all of a tracker that
 /// starts by itself. Draws the panels into `video` when it is given (its time is not counted).
 Result<ClipScore> track_clip(const std::filesystem::path& folder, const ClipTruth& truth, const Rig& rig,
-                             const ArmOptions& options, const std::vector<JointId>& joints, double jitter_px,
+                             const TrackingOptions& options, const std::vector<JointId>& joints, double jitter_px,
                              const std::string& video = {});
 
 /// The table of scores, with its heading.

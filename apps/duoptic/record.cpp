@@ -1,12 +1,10 @@
 // duoptic record: pairs of two cameras, or of whatever gives pairs, into one file.
-#include "duoptic/recording.h"
-
 #include <fmt/format.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "duoptic/source.h"
+#include "duoptic/pipeline.h"
 #include "input.h"
 #include "interrupt.h"
 #include "progress.h"
@@ -32,45 +30,34 @@ struct Options {
   bool force = false, json = false, quiet = false;
 };
 
-struct Summary {
-  Next end = Next::kEnd;
-  double length_s = 0;  // from the first pair's capture to the last one's
-};
-
 /// Up to the end of the source, the time that was asked for, or Ctrl-C.
-Result<Summary> record_all(PairSource& pairs, Recorder& recorder, const Options& options, const CLI::App& app) {
+Result<Next> record_all(Pipeline& pipeline, const Options& options, const CLI::App& app) {
   const Interrupt interrupt;
-  Progress progress(app, pairs.count(), options.quiet);
-  Summary summary;
-  TimeNs start_ns = 0;
-  for (Pair pair; !Interrupt::asked();) {
-    DUO_TRY_ASSIGN(summary.end, pairs.next(pair));
-    if (summary.end == Next::kNothing) continue;
-    if (summary.end != Next::kPicture) break;
-    if (recorder.pairs() == 0) start_ns = pair.left.t_ns;
-    const double t_s = static_cast<double>(pair.left.t_ns - start_ns) * 1e-9;
-    if (options.seconds > 0 && t_s >= options.seconds) break;
-    summary.length_s = t_s;
-    DUO_TRY(recorder.write(pair));
-    progress.frame(recorder.pairs());
+  Progress progress(app, pipeline.count(), options.quiet);
+  Next next = Next::kPicture;
+  while (!Interrupt::asked() && pipeline.recording().on && next != Next::kEnd && next != Next::kCut) {
+    DUO_TRY_ASSIGN(next, pipeline.next());
+    progress.frame(pipeline.recording().pairs);
   }
-  DUO_TRY(recorder.finish());
-  return summary;
+  pipeline.stop_recording();
+  if (const auto failure = pipeline.recording_failure()) return *failure;
+  return next;
 }
 
-void print(const Summary& summary, const Recorder& recorder, const PairSource& pairs, const Options& options, bool rig) {
+void print(const Pipeline& pipeline, const Options& options, Next end, bool rig) {
+  const RecordingStatus done = pipeline.recording();
+  const Size size = pipeline.setup().size;
   if (options.json) {
-    const nlohmann::json out = {
-        {"file", options.output},           {"pairs", recorder.pairs()},    {"width", pairs.size().width},
-        {"height", pairs.size().height},    {"length_s", summary.length_s}, {"bytes", recorder.bytes()},
-        {"codecs", recorder.codecs()},      {"dropped", pairs.dropped()},   {"rig", rig},
-        {"cut", summary.end == Next::kCut}, {"warning", pairs.warning()}};
+    const nlohmann::json out = {{"file", options.output},   {"pairs", done.pairs},          {"width", size.width},
+                                {"height", size.height},    {"length_s", done.length_s},    {"bytes", done.bytes},
+                                {"codecs", done.codecs},    {"dropped", done.dropped},      {"rig", rig},
+                                {"cut", end == Next::kCut}, {"warning", pipeline.warning()}};
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else if (!options.quiet) {
-    fmt::print("{}: {} pair{} of {}x{} in {:.1f} s, {}, {:.1f} MB, {} rig{}\n", options.output, recorder.pairs(),
-               recorder.pairs() == 1 ? "" : "s", pairs.size().width, pairs.size().height, summary.length_s, recorder.codecs(),
-               static_cast<double>(recorder.bytes()) * 1e-6, rig ? "with" : "no",
-               pairs.dropped() > 0 ? fmt::format(", {} dropped", pairs.dropped()) : "");
+    fmt::print("{}: {} pair{} of {}x{} in {:.1f} s, {}, {:.1f} MB, {} rig{}\n", options.output, done.pairs,
+               done.pairs == 1 ? "" : "s", size.width, size.height, done.length_s, done.codecs,
+               static_cast<double>(done.bytes) * 1e-6, rig ? "with" : "no",
+               done.dropped > 0 ? fmt::format(", {} dropped", done.dropped) : "");
   }
 }
 
@@ -79,24 +66,24 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(setup.rig, load_rig(options.rig));
   }
-  DUO_TRY_ASSIGN(const Input input, open_input(options.left, options.right, setup.rig, options.skew_ms));
-  const auto& pairs = input.pairs;
+  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, setup.rig, options.skew_ms));
   setup.rig = input.rig;
-  setup.frame_s = pairs->frame_s();
+  setup.frame_s = input.pairs->frame_s();
   setup.replace = options.force;
-  if (pairs->live()) setup.date = date_now();
-  if (setup.rig && setup.rig->left.size != pairs->size())
-    return Error{
-        ErrorCode::kBadInput,
-        fmt::format("cannot record {} with this rig: it is of pictures of {}x{}, these have {}x{}", options.left,
-                    setup.rig->left.size.width, setup.rig->left.size.height, pairs->size().width, pairs->size().height)};
-  DUO_TRY_ASSIGN(Recorder recorder, Recorder::open(options.output, setup));
-  DUO_TRY_ASSIGN(const Summary summary, record_all(*pairs, recorder, options, app));
-  if (recorder.pairs() == 0)
+  if (input.pairs->live()) setup.date = date_now();
+  const Size size = input.pairs->size();
+  if (setup.rig && setup.rig->left.size != size)
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("cannot record {} with this rig: it is of pictures of {}x{}, these have {}x{}", options.left,
+                             setup.rig->left.size.width, setup.rig->left.size.height, size.width, size.height)};
+  DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), {.engine = ""}));
+  DUO_TRY(pipeline.record(options.output, setup, options.seconds));
+  DUO_TRY_ASSIGN(const Next end, record_all(pipeline, options, app));
+  if (pipeline.recording().pairs == 0)
     return Error{ErrorCode::kBadInput, fmt::format("nothing recorded: {} gave no pair; no file was made", options.left)};
-  print(summary, recorder, *pairs, options, setup.rig.has_value());
-  if (const std::string warning = pairs->warning(); !warning.empty()) say(app, "warning: " + warning);
-  return summary.end == Next::kCut ? Exit::kCut : Exit::kOk;
+  print(pipeline, options, end, setup.rig.has_value());
+  if (const std::string warning = pipeline.warning(); !warning.empty()) say(app, "warning: " + warning);
+  return end == Next::kCut ? Exit::kCut : Exit::kOk;
 }
 
 }  // namespace

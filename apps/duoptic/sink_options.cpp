@@ -5,51 +5,77 @@
 namespace duo::app {
 namespace {
 
+using Made = Result<std::unique_ptr<Sink>>;
+
+constexpr SinkKind kSinkKinds[] = {
+    {"-o,--output", "FILE", "File for the JSON lines instead of stdout", "JSON lines", ".jsonl",
+     [](const std::string& target, const SinkOptions&, const TrackHeader& header, std::string&) -> Made {
+       return make_json_lines(target, header);
+     }},
+    {"--video", "FILE", "MP4 with the four panels: joints, depth, body, hue", "Video", ".mp4",
+     [](const std::string& target, const SinkOptions&, const TrackHeader& header, std::string& note) -> Made {
+       return make_panel_video(target, header, note);
+     }},
+    {"--csv", "FILE", "Table: a row per frame, person and joint", "CSV", ".csv",
+     [](const std::string& target, const SinkOptions& options, const TrackHeader&, std::string&) -> Made {
+       DUO_TRY_ASSIGN(const Axes axes, axes_of(options.axes));
+       return make_csv(target, axes);
+     }},
+    {"--bvh", "FILE", "Motion for Blender and other animation programs, metres, y up", "BVH", ".bvh",
+     [](const std::string& target, const SinkOptions&, const TrackHeader& header, std::string&) -> Made {
+       return make_bvh(target, header);
+     }},
+    {"--osc", "HOST:PORT", "Send OSC messages per frame by UDP, send-only", "OSC", "127.0.0.1:9000",
+     [](const std::string& target, const SinkOptions& options, const TrackHeader&, std::string&) -> Made {
+       DUO_TRY_ASSIGN(const Axes axes, axes_of(options.axes));
+       return make_osc(target, axes);
+     }},
+    {"--vmc", "HOST:PORT", "Send avatar bones (Virtual Motion Capture protocol) by UDP, send-only", "VMC", "127.0.0.1:39539",
+     [](const std::string& target, const SinkOptions&, const TrackHeader&, std::string&) -> Made { return make_vmc(target); }},
+};
+constexpr std::size_t kLines = 0, kVideo = 1;
+
 std::vector<std::string> axes_names() { return {kAxesNames.begin(), kAxesNames.end()}; }
 
 }  // namespace
 
+std::span<const SinkKind> sink_kinds() { return kSinkKinds; }
+
 void SinkOptions::add_to(CLI::App& app) {
-  app.add_option("-o,--output", lines, "File for the JSON lines instead of stdout")->type_name("FILE");
-  app.add_option("--video", video, "MP4 with the four panels: joints, depth, body, hue")->type_name("FILE");
-  const auto add_many = [&](const char* name, std::vector<std::string>& to, const char* type, const char* what) {
-    app.add_option(name, to, what)->type_name(type)->allow_extra_args(false);
-  };
-  add_many("--csv", csv, "FILE", "Table: a row per frame, person and joint");
-  add_many("--bvh", bvh, "FILE", "Motion for Blender and other animation programs, metres, y up");
-  add_many("--osc", osc, "HOST:PORT", "Send OSC messages a frame by UDP, send-only");
-  add_many("--vmc", vmc, "HOST:PORT", "Send avatar bones (Virtual Motion Capture protocol) by UDP, send-only");
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const SinkKind& kind = kSinkKinds[i];
+    CLI::Option* option = app.add_option(kind.option, targets[i], kind.help)->type_name(kind.type)->allow_extra_args(false);
+    if (i == kLines || i == kVideo) option->expected(1);
+  }
   app.add_option("--axes", axes, "Coordinate system of --csv and --osc, see docs/formats.md")
       ->check(CLI::IsMember(axes_names()))
       ->capture_default_str();
 }
 
-Result<std::vector<NamedSink>> SinkOptions::make(const TrackHeader& header, bool live, const CLI::App& app) const {
-  DUO_TRY_ASSIGN(const Axes known_axes, axes_of(axes));
-  std::vector<NamedSink> sinks;
-  const auto add = [&](const std::string& name, Result<std::unique_ptr<Sink>> made) -> Result<void> {
-    if (!made) return made.error();
-    const bool waits = live && !(*made)->instant();
-    sinks.push_back({name, waits ? in_background(std::move(*made)) : std::move(*made)});
-    return {};
-  };
-  if (!video.empty()) {
-    std::string note;
-    DUO_TRY(add(video, make_panel_video(video, header, note)));
-    if (!note.empty()) say(app, "warning: " + note);
-  }
-  for (const std::string& file : csv) DUO_TRY(add(file, make_csv(file, known_axes)));
-  for (const std::string& file : bvh) DUO_TRY(add(file, make_bvh(file, header)));
-  for (const std::string& target : osc) DUO_TRY(add(target, make_osc(target, known_axes)));
-  for (const std::string& target : vmc) DUO_TRY(add(target, make_vmc(target)));
-  DUO_TRY(add(lines.empty() ? "stdout" : lines, make_json_lines(lines, header)));
-  return sinks;
+bool SinkOptions::wants_video() const { return !targets[kVideo].empty(); }
+
+Result<std::string> SinkOptions::add_sink(Pipeline& pipeline, const SinkKind& kind, const std::string& target) const {
+  std::string note;
+  DUO_TRY_ASSIGN(auto sink, kind.make(target, *this, pipeline.header(), note));
+  DUO_TRY(pipeline.add_sink(target.empty() ? "stdout" : target, std::move(sink)));
+  return note;
 }
 
-std::string dropped_text(const std::vector<NamedSink>& sinks) {
+/// JSON lines last: they may go to stdout, where they must not begin before all else could be opened.
+Result<void> SinkOptions::add_sinks(Pipeline& pipeline, const CLI::App& app) const {
+  for (std::size_t i = 1; i <= targets.size(); ++i) {
+    const std::size_t kind = i % targets.size();
+    for (const std::string& target : targets[kind]) {
+      DUO_TRY_ASSIGN(const std::string note, add_sink(pipeline, kSinkKinds[kind], target));
+      if (!note.empty()) say(app, "warning: " + note);
+    }
+  }
+  return {};
+}
+
+std::string dropped_text(const Pipeline& pipeline) {
   std::string text;
-  for (const auto& [name, sink] : sinks)
-    if (sink->dropped() > 0) text += fmt::format(", {} dropped by {}", sink->dropped(), name);
+  for (const auto& [name, count] : pipeline.dropped_by_sinks()) text += fmt::format(", {} dropped by {}", count, name);
   return text;
 }
 

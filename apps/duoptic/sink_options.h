@@ -1,34 +1,49 @@
-// The options that say where tracked persons go.
+// Where tracked persons go: the options of `track` and the boxes of `view`.
 #pragma once
 
-#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "command.h"
-#include "duoptic/sink.h"
+#include "duoptic/pipeline.h"
 
 namespace duo::app {
 
-/// A sink and how its user knows it.
-struct NamedSink {
-  std::string name;
-  std::unique_ptr<Sink> sink;
+struct SinkOptions;
+
+/// One kind of output.
+struct SinkKind {
+  const char *option, *type, *help;
+  const char* label;   // in the window
+  const char* target;  // in the window: the ending of a file's name, or host:port
+  /// `note`: what its user should know of it; else as it was.
+  Result<std::unique_ptr<Sink>> (*make)(const std::string& target, const SinkOptions& options, const TrackHeader& header,
+                                        std::string& note);
+  bool is_file() const { return *target == '.'; }
 };
+/// JSON lines are the first.
+std::span<const SinkKind> sink_kinds();
 
 struct SinkOptions {
-  std::string lines, video;
-  std::vector<std::string> csv, bvh, osc, vmc;
+  std::vector<std::vector<std::string>> targets;  // of each kind
   std::string axes = "opencv";
 
+  SinkOptions() : targets(sink_kinds().size()) {}
   void add_to(CLI::App& app);
-  /// All that were asked for; JSON lines last, on stdout without -o. `live`: none of them can slow the others or the tracker.
+  bool wants_video() const;
+  /// One more output of a running pipeline, called `target`.
   ///
-  /// Errors  those of the sinks; a sink made before leaves nothing
-  Result<std::vector<NamedSink>> make(const TrackHeader& header, bool live, const CLI::App& app) const;
+  /// Returns  what its user should know of it, or ""
+  /// Errors   those of the kind
+  Result<std::string> add_sink(Pipeline& pipeline, const SinkKind& kind, const std::string& target) const;
+  /// Every output that was asked for.
+  ///
+  /// Errors  those of the kinds; an output made before leaves nothing
+  Result<void> add_sinks(Pipeline& pipeline, const CLI::App& app) const;
 };
 
 /// Each sink that dropped frames: ", 3 dropped by arm.mp4".
-std::string dropped_text(const std::vector<NamedSink>& sinks);
+std::string dropped_text(const Pipeline& pipeline);
 
 }  // namespace duo::app

@@ -13,9 +13,9 @@ double skew_depth_error_m(double z_m, double speed_m_s, double skew_s, double ba
 
 std::optional<std::string> SkewWatch::see(const TrackedFrame& frame) {
   constexpr double kLeastError_m = 0.03, kQuiet_s = 10, kForget_s = 60;
-  constexpr double kLeft = 0.3;       // of the error, once the pictures were put to one moment (see InStep)
+  constexpr double kLeft = 0.3;       // of the error, once the pictures were put to one moment (see stages/align_time)
   constexpr double kSmooth_s = 0.15;  // from frame to frame the speed would mostly be noise
-  const double skew_s = static_cast<double>(frame.frame.skew_ns) * 1e-9;
+  const double skew_s = static_cast<double>(frame.frame->skew_ns) * 1e-9;
   std::optional<std::string> warning;
   double worst_m = kLeastError_m;
   std::erase_if(before_, [&](const auto& joint) { return frame.t_s - joint.second.t_s > kForget_s; });

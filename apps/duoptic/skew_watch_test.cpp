@@ -15,15 +15,14 @@ TEST(Skew, DepthErrorByHand) {
 /// Tells a watch of a hand at 2 m that was at x_m.
 std::optional<std::string> told(SkewWatch& watch, double t_s, double x_m, double skew_ms,
                                 JointState state = JointState::kSeen) {
-  Picture picture;
-  Frame frame;
-  frame.skew_ns = static_cast<TimeNs>(skew_ms * 1e6);
+  const auto frame = std::make_shared<Frame>();
+  frame->skew_ns = static_cast<TimeNs>(skew_ms * 1e6);
   Person person;
   person.id = 1;
   person.skeleton = &kRightArm;
   person.joints[*kRightArm.index_of(JointId::kRightHand)] = {
       .p_in_rig_m = {x_m, 0, 2}, .cov_m2 = Covariance3::isotropic(0.02), .state = state};
-  return watch.see({0, t_s, picture, frame, {&person, 1}, {}});
+  return watch.see({0, t_s, std::make_shared<Picture>(), frame, {&person, 1}, {}});
 }
 
 TEST(Skew, AWarningWhereItMattersAndNotTooOften) {

@@ -4,15 +4,14 @@
 #include <memory>
 #include <optional>
 
-#include "arm_run.h"
 #include "interrupt.h"
 #include "progress.h"
-#include "recording.h"
 #include "rig_report.h"
 #include "selection.h"
 #include "sink_options.h"
 #include "skew_watch.h"
 #include "timing.h"
+#include "tracking_options.h"
 
 namespace duo::app::track {
 namespace {
@@ -44,9 +43,12 @@ struct Options {
   std::int64_t at_frame = 0;
   double skew_ms = 0;
   bool force = false, stats = false, quiet = false, realtime = false;
-  ArmOptions arm;
+  TrackingOptions tracking;
   SinkOptions sinks;
 };
+
+/// JSON lines go there without -o.
+bool on_stdout(const Options& options) { return options.sinks.targets.front().empty(); }
 
 /// Says what happens to live cameras, once, to the engine, and to the recording.
 class Events {
@@ -59,8 +61,8 @@ class Events {
   void happened(const std::string& event) {
     if (!event.empty()) say(app_, "warning: " + event);
   }
-  void look_at(const Recording& recording) {
-    const auto failure = recording_failed_ ? std::nullopt : recording.failure();
+  void look_at(const Pipeline& pipeline) {
+    const auto failure = recording_failed_ ? std::nullopt : pipeline.recording_failure();
     if (!failure) return;
     say(app_, fmt::format("warning: {}; tracking goes on", failure->what));
     recording_failed_ = true;
@@ -72,25 +74,25 @@ class Events {
   bool recording_failed_ = false;
 };
 
-/// As ArmRun::next(), but waits for live cameras that are away and ends with Ctrl-C.
-Result<Next> next_frame(ArmRun& run, Events& events) {
+/// As Pipeline::next(), but waits for live cameras that are away and ends with Ctrl-C.
+Result<Next> next_frame(Pipeline& pipeline, Events& events) {
   while (true) {
     if (Interrupt::asked()) return Next::kEnd;
-    DUO_TRY_ASSIGN(const Next next, run.next());
-    if (run.header().live) events.see(run.frames().warning());
-    if (next == Next::kPicture) events.happened(run.frames().last().event);
+    DUO_TRY_ASSIGN(const Next next, pipeline.next());
+    if (pipeline.live()) events.see(pipeline.warning());
+    if (next == Next::kPicture) events.happened(pipeline.event());
     if (next != Next::kNothing) return next;
   }
 }
 
 /// The frame in which joints are selected.
-Result<void> first_frame(ArmRun& run, Events& events, std::int64_t number, const std::string& left) {
-  DUO_TRY_ASSIGN(const Next next, next_frame(run, events));
+Result<void> first_frame(Pipeline& pipeline, Events& events, std::int64_t number, const std::string& left) {
+  DUO_TRY_ASSIGN(const Next next, next_frame(pipeline, events));
   if (next == Next::kPicture) return {};
   if (Interrupt::asked())
     return Error{ErrorCode::kBadInput,
                  fmt::format("stopped before frame {}, the one to select in, came from {}", number, left)};
-  const std::int64_t read = run.frames().read();
+  const std::int64_t read = pipeline.read();
   return Error{ErrorCode::kBadInput, fmt::format("cannot select at frame {}: {} gives {} pair{}, numbered from 0", number, left,
                                                  read, read == 1 ? "" : "s")};
 }
@@ -100,59 +102,51 @@ struct Summary {
   std::size_t frames = 0;
   std::vector<double> engine_ms, tracker_ms, latency_ms;  // latency: live, from capture to all sinks
   Next end = Next::kEnd;
-  std::string dropped;  // by each sink that did
 };
 
 /// Tracks from the first frame to the end of the files, or to Ctrl-C.
-Result<Summary> track_all(ArmRun& run, Events& events, const Recording& recording, std::span<const Selection> selections,
-                          const Options& options, const CLI::App& app) {
-  std::span<const Person> people;
-  if (selections.empty()) {
-    people = run.track();
-  } else {
-    DUO_TRY_ASSIGN(people, run.select(selections));
-  }
-  DUO_TRY_ASSIGN(const auto sinks, options.sinks.make(run.header(), run.frames().live(), app));
+Result<Summary> track_all(Pipeline& pipeline, Events& events, std::span<const Selection> selections, const Options& options,
+                          const CLI::App& app) {
+  if (!selections.empty()) DUO_TRY(pipeline.select(selections));
+  DUO_TRY(options.sinks.add_sinks(pipeline, app));
+  if (on_stdout(options)) DUO_TRY(options.sinks.add_sink(pipeline, sink_kinds().front(), ""));
   Summary summary;
-  Progress progress(app, run.frames().count(), options.quiet);
-  SkewWatch skew(run.header().rectified.baseline_m);
+  Progress progress(app, pipeline.count(), options.quiet);
+  SkewWatch skew(pipeline.header().rectified.baseline_m);
   while (true) {
-    TrackedFrame frame = run.tracked(people);
-    if (options.stats) frame.times = run.times();
-    for (const auto& [name, sink] : sinks) DUO_TRY(sink->write(frame));
+    DUO_TRY(pipeline.write());
+    const TrackedFrame frame = pipeline.tracked();
     if (summary.frames++ < Summary::kTimes) {
-      summary.engine_ms.push_back(run.times().engine_ms);
-      summary.tracker_ms.push_back(run.times().tracker_ms);
-      if (run.header().live)
-        summary.latency_ms.push_back(clock_ms(CLOCK_MONOTONIC) - static_cast<double>(frame.left.t_ns) * 1e-6);
+      summary.engine_ms.push_back(pipeline.times().engine_ms);
+      summary.tracker_ms.push_back(pipeline.times().tracker_ms);
+      if (pipeline.live())
+        summary.latency_ms.push_back(clock_ms(CLOCK_MONOTONIC) - static_cast<double>(frame.left->t_ns) * 1e-6);
     }
     progress.frame(frame.number + 1);
-    events.look_at(recording);
-    if (const auto warning = run.header().live ? skew.see(frame) : std::nullopt) say(app, "warning: " + *warning);
-    DUO_TRY_ASSIGN(summary.end, next_frame(run, events));
+    events.look_at(pipeline);
+    if (const auto warning = pipeline.live() ? skew.see(frame) : std::nullopt) say(app, "warning: " + *warning);
+    DUO_TRY_ASSIGN(summary.end, next_frame(pipeline, events));
     if (summary.end != Next::kPicture) break;
-    people = run.track();
   }
-  for (const auto& [name, sink] : sinks) DUO_TRY(sink->finish());
-  summary.dropped = dropped_text(sinks);
+  DUO_TRY(pipeline.finish_sinks());
   return summary;
 }
 
-std::string text_of(const Summary& summary, double seconds, const ArmRun& run, const Options& options) {
+std::string text_of(const Summary& summary, double seconds, const Pipeline& pipeline, const Options& options) {
   const std::size_t frames = summary.frames;
   const std::string dropped =
-      run.header().live ? fmt::format(", {} dropped, latency {:.1f} ms", run.frames().dropped(), median(summary.latency_ms))
-                        : std::string();
+      pipeline.live() ? fmt::format(", {} dropped, latency {:.1f} ms", pipeline.dropped(), median(summary.latency_ms))
+                      : std::string();
   return fmt::format(
       "{} frame{} of {}x{} in {:.1f} s = {:.1f} frames/s{}; engine {:.1f} ms, tracker {:.1f} ms ({}, {}, {} thread{}){}",
-      frames, frames == 1 ? "" : "s", run.header().size.width, run.header().size.height, seconds,
+      frames, frames == 1 ? "" : "s", pipeline.header().size.width, pipeline.header().size.height, seconds,
       static_cast<double>(frames) / seconds, dropped, median(summary.engine_ms), median(summary.tracker_ms),
-      run.header().engine, run.header().tracker, options.arm.engine.threads, options.arm.engine.threads == 1 ? "" : "s",
-      summary.dropped);
+      pipeline.header().engine, pipeline.header().tracker, options.tracking.engine.threads,
+      options.tracking.engine.threads == 1 ? "" : "s", dropped_text(pipeline));
 }
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
-  DUO_TRY_ASSIGN(const auto tracker, make_tracker(options.arm.tracker));
+  DUO_TRY_ASSIGN(const auto tracker, make_tracker(options.tracking.tracker));
   if (options.select.empty() && !tracker->starts_by_itself()) throw CLI::RequiredError("--select");
   const std::vector<Selection> selections = parse_selections(options.select, options.arm_side, tracker->skeletons());
   std::optional<Rig> rig;
@@ -162,34 +156,33 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, rig, options.skew_ms));
   if (!input.rig) throw CLI::RequiredError("--rig");  // most sources do not bring their own
   if (options.realtime && !input.pairs->live()) input.pairs = in_real_time(std::move(input.pairs));
-  Recording recording;  // before what reads the pairs
-  if (!options.record.empty()) {
-    DUO_TRY(recording.start(options.record, {.frame_s = input.pairs->frame_s(),
-                                             .rig = input.rig,
-                                             .date = input.pairs->live() ? date_now() : "",
-                                             .replace = options.force}));
-    input.pairs = std::make_unique<Tap>(std::move(input.pairs), recording);
-  }
-  ArmOptions arm = options.arm;
-  arm.all_maps = !options.sinks.video.empty();
-  arm.in_bulk = true;
-  DUO_TRY_ASSIGN(ArmRun run, ArmRun::open(std::move(input), arm, options.at_frame));
+  const RecorderSetup to_record{.frame_s = input.pairs->frame_s(),
+                                .rig = input.rig,
+                                .date = input.pairs->live() ? date_now() : "",
+                                .replace = options.force};
+  TrackingOptions tracking = options.tracking;
+  tracking.all_maps = options.sinks.wants_video();
+  tracking.in_bulk = true;
+  PipelineSetup setup = tracking.setup(input);
+  setup.first = options.at_frame;
+  setup.tell_times = options.stats;
+  DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
+  if (!options.record.empty()) DUO_TRY(pipeline.record(options.record, to_record));
   std::optional<Interrupt> interrupt;
-  if (run.header().live) interrupt.emplace();
+  if (pipeline.live()) interrupt.emplace();
   Events events(app);
-  DUO_TRY(first_frame(run, events, options.at_frame, options.left));
+  DUO_TRY(first_frame(pipeline, events, options.at_frame, options.left));
   Result<Summary> summary = Summary{};
-  const Times times = timed([&] { summary = track_all(run, events, recording, selections, options, app); });
-  recording.stop();
+  const Times times = timed([&] { summary = track_all(pipeline, events, selections, options, app); });
+  pipeline.stop_recording();
   if (!summary) return summary.error();
   // stdout belongs to the lines when they go there.
   if (options.stats)
-    say(app, text_of(*summary, times.wall_ms / 1000, run, options));
-  else if (!options.quiet && !options.sinks.lines.empty())
-    fmt::print("{}\n", text_of(*summary, times.wall_ms / 1000, run, options));
-  if (const std::string warning = run.frames().warning(); !run.header().live && !warning.empty())
-    say(app, "warning: " + warning);
-  if (const auto failure = recording.failure()) return *failure;
+    say(app, text_of(*summary, times.wall_ms / 1000, pipeline, options));
+  else if (!options.quiet && !on_stdout(options))
+    fmt::print("{}\n", text_of(*summary, times.wall_ms / 1000, pipeline, options));
+  if (const std::string warning = pipeline.warning(); !pipeline.live() && !warning.empty()) say(app, "warning: " + warning);
+  if (const auto failure = pipeline.recording_failure()) return *failure;
   return summary->end == Next::kCut ? Exit::kCut : Exit::kOk;
 }
 
@@ -225,7 +218,7 @@ Command add(CLI::App& app) {
   sub->add_flag("--force", options->force, "Replace an earlier recording of that name")->needs(record);
   sub->add_flag("--realtime", options->realtime,
                 "Take files at the pace of their capture times, as if live: late pairs are dropped");
-  options->arm.add_to(*sub);
+  options->tracking.add_to(*sub);
   sub->add_flag("--stats", options->stats, "Add times to each line and print a summary of them on stderr");
   sub->add_flag("--quiet", options->quiet, "No progress and no summary");
   sub->footer(kFooter);

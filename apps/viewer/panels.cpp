@@ -47,7 +47,7 @@ Result<void> Panels::show(std::shared_ptr<const Shown> shown) {
     DUO_TRY(turbo_strip_.set(turbo_strip()));
     DUO_TRY(hue_strip_.set(hue_strip()));
   }
-  const Frame& frame = shown->frame;
+  const Frame& frame = *shown->frame;
   const auto& d_q4 = frame.disparity.d_q4;
   // Colours that mean the same from frame to frame: the range follows slowly, with room for an arm stretched out to the
   // cameras.
@@ -61,7 +61,7 @@ Result<void> Panels::show(std::shared_ptr<const Shown> shown) {
                 range_.near_px + follow * (wide.near_px - range_.near_px)};
     }
   if (orbit_.middle_m <= 0 || shows_ == 1) orbit_.middle_m = std::max(0.3, foreground_m(d_q4, header_.rectified));
-  DUO_TRY(camera_.set(shown->left.pixels));
+  DUO_TRY(camera_.set(shown->left->pixels));
   if (painted_.size() != d_q4.size()) painted_ = Image<Rgb8>(d_q4.size());
   color_disparity(d_q4, range_, painted_);
   DUO_TRY(depth_.set(painted_));
@@ -208,7 +208,7 @@ void Panels::draw_depth(const Cell& cell) {
   put_depth_legend(cell);
   if (!ImGui::IsWindowHovered() || !ImGui::IsMouseHoveringRect(fit.from, fit.to)) return;
   const ImVec2 mouse = ImGui::GetMousePos();
-  const auto& d_q4 = shown_->frame.disparity.d_q4;
+  const auto& d_q4 = shown_->frame->disparity.d_q4;
   const int x = std::clamp(static_cast<int>((mouse.x - fit.from.x) / fit.scale), 0, d_q4.width() - 1);
   const int y = std::clamp(static_cast<int>((mouse.y - fit.from.y) / fit.scale), 0, d_q4.height() - 1);
   const std::uint16_t d = d_q4.at(y, x);
@@ -263,7 +263,7 @@ void Panels::turn_cloud(const Cell& cell) {
   if (!ImGui::IsItemHovered()) return;
   orbit_.zoom = std::clamp(orbit_.zoom * std::pow(1.15, io.MouseWheel), 0.3, 6.0);
   if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
-    orbit_ = {.middle_m = std::max(0.3, foreground_m(shown_->frame.disparity.d_q4, header_.rectified))};
+    orbit_ = {.middle_m = std::max(0.3, foreground_m(shown_->frame->disparity.d_q4, header_.rectified))};
 }
 
 Result<void> Panels::draw_cloud_panel(const Cell& cell) {
@@ -278,7 +278,7 @@ Result<void> Panels::draw_cloud_panel(const Cell& cell) {
                       orbit_.zoom != drawn_orbit_.zoom || orbit_.middle_m != drawn_orbit_.middle_m;
   if (cloud_stale_ || turned || points_.size() != size) {
     if (points_.size() != size) points_ = Image<Rgb8>(size);
-    draw_points(shown_->frame.disparity.d_q4, shown_->frame.color, header_.rectified, camera, points_);
+    draw_points(shown_->frame->disparity.d_q4, shown_->frame->color, header_.rectified, camera, points_);
     DUO_TRY(cloud_.set(points_));
     drawn_orbit_ = orbit_;
     cloud_stale_ = false;

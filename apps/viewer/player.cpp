@@ -1,14 +1,27 @@
 #include "player.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
+#include <filesystem>
 
 #include "rig_report.h"
+#include "timing.h"
 
 namespace duo::app::view {
 namespace {
+
+/// "duoptic_2026-05-31_14-03-59.mkv" in the working folder, by the user's time; a name that no file has.
+std::string dated_name(const std::string& ending) {
+  const std::string stem = fmt::format("duoptic_{:%Y-%m-%d_%H-%M-%S}", fmt::localtime(std::time(nullptr)));
+  std::error_code ignored;
+  std::string name = stem + ending;
+  for (int i = 2; std::filesystem::exists(name, ignored); ++i) name = fmt::format("{}_{}{}", stem, i, ending);
+  return name;
+}
 
 /// One pair, as a stream.
 class OnePair final : public PairSource {
@@ -31,46 +44,34 @@ class OnePair final : public PairSource {
   bool given_ = false;
 };
 
-Picture copy_of(const Picture& picture) { return {picture.pixels.clone(), picture.t_ns, picture.sequence}; }
-
-Result<ArmRun> open_run(const PlayerOptions& options, Recording& recording) {
-  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, options.rig));
-  input.pairs = std::make_unique<Tap>(std::move(input.pairs), recording);
-  ArmOptions arm = options.arm;
-  arm.all_maps = true;
-  return ArmRun::open(std::move(input), arm);
-}
-
 double now_ms() { return clock_ms(CLOCK_MONOTONIC); }
 
 }  // namespace
 
-Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options) {
+Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options, const CLI::App& app) {
   std::unique_ptr<Player> player(new Player(options));
-  DUO_TRY_ASSIGN(ArmRun run, open_run(options, player->recording_));
-  player->header_ = run.header();
-  player->rig_ = run.rig();
-  player->skew_ = SkewWatch(run.header().rectified.baseline_m);
-  player->live_ = run.header().live;
-  player->still_ = run.frames().still();
-  player->count_ = run.frames().count();
-  player->asks_for_clicks_ = !run.tracker().starts_by_itself();
+  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, options.rig));
+  TrackingOptions tracking = options.tracking;
+  tracking.all_maps = true;
+  PipelineSetup setup = tracking.setup(input);
+  DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
+  player->rig_ = *pipeline.setup().rig;
+  player->skew_ = SkewWatch(pipeline.header().rectified.baseline_m);
+  player->still_ = pipeline.still();
+  player->count_ = pipeline.count();
   player->status_.loop = options.loop;
-  if (!options.lines.empty()) {
-    DUO_TRY_ASSIGN(player->lines_, make_json_lines(options.lines, run.header()));
-  }
-  player->run_.emplace(std::move(run));
-  player->thread_ = std::thread([p = player.get()] { p->run(); });
+  DUO_TRY(options.sinks.add_sinks(pipeline, app));
+  for (const auto& names : options.sinks.targets)
+    player->status_.outputs.push_back({names.empty() ? "" : names.back(), !names.empty(), 0});
+  player->pipeline_.emplace(std::move(pipeline));
+  DUO_TRY_ASSIGN(player->thread_,
+                 Worker::start("show the source", [p = player.get()](const std::stop_token& stop) { return p->run(stop); }));
   return player;
 }
 
 Player::~Player() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopped_ = true;
-  }
-  wished_.notify_all();
-  if (thread_.joinable()) thread_.join();
+  thread_.ask_to_stop();
+  wishes_.close();
 }
 
 std::shared_ptr<const Shown> Player::newest() const {
@@ -81,14 +82,6 @@ std::shared_ptr<const Shown> Player::newest() const {
 PlayerStatus Player::status() const {
   const std::lock_guard lock(mutex_);
   return status_;
-}
-
-void Player::post(std::function<void()> wish) {
-  {
-    const std::lock_guard lock(mutex_);
-    wishes_.push_back(std::move(wish));
-  }
-  wished_.notify_all();
 }
 
 void Player::play(bool on) {
@@ -106,7 +99,7 @@ void Player::step() {
 
 void Player::restart() {
   post([this] {
-    if (live_ || !reopen()) return;
+    if (live() || !reopen()) return;
     const std::lock_guard lock(mutex_);
     status_.state = PlayState::kPlaying;
   });
@@ -126,97 +119,112 @@ void Player::loop(bool on) {
 
 void Player::select(const std::vector<Selection>& selections) {
   post([this, selections] {
-    if (!has_frame_ || !run_) return;
-    const auto selected = run_->select(selections);
-    if (!selected) {
+    if (!pipeline_->pair()) return;
+    const bool first = pipeline_->people().empty();
+    if (const auto selected = pipeline_->select(selections); !selected) {
       fail(selected.error(), false);
       const std::lock_guard lock(mutex_);
       ++status_.refused;
       return;
     }
-    selected_.emplace(static_cast<std::int64_t>(run_->frames().last().pair.sequence), selections);
+    selected_.emplace(pipeline_->tracked().number, selections);
     {
       const std::lock_guard lock(mutex_);
       status_.problem.clear();
     }
-    const bool first = people_.empty();
-    keep(*selected);
-    if (first) write_line(run_->tracked(people_));  // else this frame has its line already
+    if (first) write();  // else this frame has its line already
     show(0);
   });
 }
 
 void Player::forget_people() {
   post([this] {
-    if (run_) run_->reset();
+    pipeline_->forget();
     selected_.reset();
-    people_.clear();
-    if (has_frame_) show(0);
+    if (pipeline_->pair()) show(0);
   });
 }
 
 void Player::set(const std::vector<std::pair<std::string, double>>& parameters) {
   post([this, parameters] {
-    // After the end nothing is matched any more: the next round has them.
-    if (run_ && !resting()) {
-      if (const auto set = run_->set(parameters); !set) return fail(set.error(), false);
-      if (has_frame_) show(0);
-    }
-    options_.arm.engine.set.clear();
-    for (const auto& [name, value] : parameters) options_.arm.engine.set.push_back(fmt::format("{}={}", name, value));
-    if (!still_ || !reopen()) return;
-    const std::lock_guard lock(mutex_);
-    status_.state = PlayState::kPlaying;
+    if (const auto set = pipeline_->set(parameters); !set) return fail(set.error(), false);
+    if (!pipeline_->pair()) return;
+    if (still_ && selected_) static_cast<void>(pipeline_->select(selected_->second));
+    show(0);
   });
 }
 
 void Player::record(bool on) {
   post([this, on] {
-    if (!on) return recording_.stop();
+    if (!on) return pipeline_->stop_recording();
     if (still_ || resting()) return;
     // What went wrong is in its status, which the window shows.
     static_cast<void>(
-        recording_.start(dated_recording_name(), {.frame_s = header_.frame_s, .rig = rig_, .date = live_ ? date_now() : ""}));
+        pipeline_->record(dated_name(".mkv"), {.frame_s = header().frame_s, .rig = rig_, .date = live() ? date_now() : ""}));
+  });
+}
+
+void Player::put_out(std::size_t kind, bool on, const std::string& target) {
+  post([this, kind, on, target] {
+    const SinkKind& what = sink_kinds()[kind];
+    OutputStatus output = status().outputs[kind];
+    if (on == output.on) return;
+    if (on) {
+      output = {what.is_file() ? dated_name(what.target) : target, true, 0};
+      const auto added = options_.sinks.add_sink(*pipeline_, what, output.name);
+      if (!added) return fail(added.error(), false);
+      const std::lock_guard lock(mutex_);
+      status_.problem = *added;
+    } else {
+      output.on = false;
+      if (const auto finished = pipeline_->finish_sink(output.name); !finished) fail(finished.error(), false);
+    }
+    const std::lock_guard lock(mutex_);
+    status_.outputs[kind] = output;
   });
 }
 
 void Player::check_rig() {
   post([this] {
-    if (!has_frame_ || !run_) return;
+    if (!pipeline_->pair()) return;
     {
       const std::lock_guard lock(mutex_);
       if (std::exchange(status_.checking_rig, true)) return;
     }
-    const Pair& last = run_->frames().last().pair;
-    checking_ = std::async(
-        std::launch::async,
-        [this](Pair pair) {
-          OnePair one(std::move(pair));
-          auto health = scene_health(rig_, one, 1);
-          {
-            const std::lock_guard lock(mutex_);
-            status_.health = std::move(health);
-            status_.checking_rig = false;
-          }
-          options_.on_news();
-        },
-        Pair{copy_of(last.left), copy_of(last.right), last.sequence});
+    const Pair& last = *pipeline_->pair();
+    const auto pair = std::make_shared<Pair>(Pair{{last.left.pixels.clone()}, {last.right.pixels.clone()}, last.sequence});
+    auto checking = Worker::start("look at the pair", [this, pair](const std::stop_token&) -> Result<void> {
+      OnePair one(std::move(*pair));
+      auto health = scene_health(rig_, one, 1);
+      {
+        const std::lock_guard lock(mutex_);
+        status_.health = std::move(health);
+        status_.checking_rig = false;
+      }
+      options_.on_news();
+      return {};
+    });
+    if (checking) {
+      checking_ = std::move(*checking);
+      return;
+    }
+    fail(checking.error(), false);
+    const std::lock_guard lock(mutex_);
+    status_.checking_rig = false;
   });
 }
 
 Result<Exit> Player::finish() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopped_ = true;
-  }
-  wished_.notify_all();
-  if (thread_.joinable()) thread_.join();
-  if (checking_.valid()) checking_.wait();
-  recording_.stop();
-  const Result<void> lines = lines_ ? lines_->finish() : Result<void>();
+  thread_.ask_to_stop();
+  wishes_.close();
+  const Result<void> ended = thread_.join();
+  if (checking_.started()) static_cast<void>(checking_.join());
+  pipeline_->stop_recording();
+  const Result<void> outputs = pipeline_->finish_sinks();
+  DUO_TRY(ended);
   if (failed_) return *failed_;
-  DUO_TRY(lines);
-  if (const auto failure = recording_.failure()) return *failure;
+  DUO_TRY(outputs);
+  if (const auto failure = pipeline_->recording_failure()) return *failure;
   return cut_ ? Exit::kCut : Exit::kOk;
 }
 
@@ -225,59 +233,56 @@ bool Player::resting() const {
   return status_.state == PlayState::kEnded;
 }
 
-void Player::run() {
-  std::unique_lock lock(mutex_);
-  while (!stopped_) {
-    if (!wishes_.empty()) {
-      const auto wishes = std::exchange(wishes_, {});
-      lock.unlock();
-      for (const auto& wish : wishes) wish();
-      options_.on_news();
-      lock.lock();
-      continue;
-    }
-    const bool moves = status_.state == PlayState::kPlaying || (step_ && status_.state == PlayState::kPaused);
-    const double wait_ms = step_ || live_ ? 0 : next_ms_ - now_ms();
-    if (moves && wait_ms <= 0) {
-      lock.unlock();
+/// Until the next frame is wanted; none while nothing plays.
+std::optional<double> Player::due_in_ms() const {
+  const std::lock_guard lock(mutex_);
+  if (step_ && status_.state == PlayState::kPaused) return 0;
+  if (status_.state != PlayState::kPlaying) return std::nullopt;
+  return step_ || live() ? 0 : std::max(0.0, next_ms_ - now_ms());
+}
+
+Result<void> Player::run(const std::stop_token& stop) {
+  constexpr double kIdle_ms = 1000;
+  for (std::function<void()> wish; !stop.stop_requested();) {
+    const std::chrono::duration<double, std::milli> wait(due_in_ms().value_or(kIdle_ms));
+    DUO_TRY_ASSIGN(const Taken taken, wishes_.take(wish, std::chrono::duration_cast<std::chrono::nanoseconds>(wait)));
+    if (taken == Taken::kClosed) break;
+    if (taken == Taken::kValue)
+      wish();
+    else if (due_in_ms() == 0.0)
       advance();
-      options_.on_news();
-      lock.lock();
-    } else {
-      const auto woken = [this] { return stopped_ || !wishes_.empty(); };
-      wished_.wait_for(lock, std::chrono::duration<double, std::milli>(moves ? wait_ms : 1000), woken);
-    }
+    else
+      continue;
+    options_.on_news();
   }
+  return {};
 }
 
 /// The next frame: track it, show it, write it.
 void Player::advance() {
-  const Result<Next> next = run_->next();
+  const Result<Next> next = pipeline_->next();
   if (!next) return fail(next.error(), true);
   {
     const std::lock_guard lock(mutex_);
     status_.silent = *next == Next::kNothing;
-    status_.dropped = run_->frames().dropped();
-    if (live_) status_.event = run_->frames().warning();
+    status_.dropped = pipeline_->dropped();
+    if (live()) status_.event = pipeline_->warning();
     if (status_.event.empty() && now_ms() < passing_until_ms_) status_.event = passing_words_;
   }
   if (*next == Next::kNothing) return;  // a step is still to come
   step_ = false;
   if (*next != Next::kPicture) return at_end(*next);
-  has_frame_ = true;
   const double now = now_ms();
   const double interval = last_ms_ > 0 ? now - last_ms_ : 0;
   last_ms_ = now;
   // Late frames shift all that follow: none is left out, and none is hurried.
-  next_ms_ = std::max(next_ms_, now - 1000 * header_.frame_s) + 1000 * header_.frame_s;
+  next_ms_ = std::max(next_ms_, now - 1000 * header().frame_s) + 1000 * header().frame_s;
 
-  const auto number = static_cast<std::int64_t>(run_->frames().last().pair.sequence);
-  const bool again = !live_ && selected_ && selected_->first == number;
-  const auto selected = again ? run_->select(selected_->second) : Result<std::span<const Person>>(run_->track());
-  keep(selected ? *selected : run_->track());
-  if (!people_.empty()) write_line(run_->tracked(people_));
-  std::string words = run_->frames().last().event;
-  if (const auto warning = live_ ? skew_.see(run_->tracked(people_)) : std::nullopt) words += *warning;
+  const TrackedFrame frame = pipeline_->tracked();
+  if (!live() && selected_ && selected_->first == frame.number) static_cast<void>(pipeline_->select(selected_->second));
+  if (!pipeline_->people().empty()) write();
+  std::string words = pipeline_->event();
+  if (const auto warning = live() ? skew_.see(frame) : std::nullopt) words += *warning;
   if (!words.empty()) {
     constexpr double kRead_ms = 10'000;
     passing_words_ = std::move(words);
@@ -287,13 +292,13 @@ void Player::advance() {
 }
 
 void Player::at_end(Next end) {
-  recording_.stop();
+  pipeline_->stop_recording();
   cut_ = cut_ || end == Next::kCut;
-  warning_ = run_->frames().warning();
+  warning_ = pipeline_->warning();
   {
     const std::lock_guard lock(mutex_);
     status_.problem = warning_;
-    if (!status_.loop || live_ || !has_frame_) {
+    if (!status_.loop || live() || !pipeline_->pair()) {
       status_.state = PlayState::kEnded;
       return;
     }
@@ -303,55 +308,49 @@ void Player::at_end(Next end) {
 
 /// From the first pair again. What was selected is selected again when its frame comes.
 bool Player::reopen() {
-  const std::int64_t frames = run_ && has_frame_ ? static_cast<std::int64_t>(run_->frames().last().pair.sequence) + 1 : 0;
-  run_.reset();  // before another: a file may be a device
-  recording_.stop();
-  auto run = open_run(options_, recording_);
-  if (!run) {
-    fail(run.error(), true);
-    return false;
-  }
-  run_.emplace(std::move(*run));
-  passed_ += frames;
-  passed_s_ += static_cast<double>(frames) * header_.frame_s;
-  has_frame_ = false;
-  people_.clear();
-  return true;
+  pipeline_->stop_recording();
+  pipeline_->close_source();  // before another: a file may be a device
+  const auto restart = [this]() -> Result<void> {
+    DUO_TRY_ASSIGN(Input input, open_input(options_.left, options_.right, options_.rig));
+    return pipeline_->restart(std::move(input.pairs));
+  };
+  const Result<void> restarted = restart();
+  if (!restarted) fail(restarted.error(), true);
+  return restarted.has_value();
 }
 
-void Player::write_line(TrackedFrame frame) {
-  if (!lines_) return;
-  frame.number += passed_;
-  frame.t_s += passed_s_;
-  if (const auto written = lines_->write(frame); !written) {
-    lines_.reset();
-    return fail(written.error(), false);
+void Player::write() {
+  const Result<void> written = pipeline_->write();
+  {
+    const std::lock_guard lock(mutex_);
+    for (OutputStatus& output : status_.outputs) {
+      output.on = output.on && pipeline_->has_sink(output.name);
+      output.frames += output.on;
+    }
   }
-  ++written_;
+  if (!written) fail(written.error(), false);
 }
 
 void Player::show(double interval_ms) {
-  const TrackedFrame now = run_->tracked(people_);
+  const TrackedFrame now = pipeline_->tracked();
   auto shown = std::make_shared<Shown>();
   shown->number = now.number;
   shown->t_s = now.t_s;
-  shown->left = copy_of(now.left);
-  shown->frame.color = now.frame.color.clone();
-  shown->frame.disparity.d_q4 = now.frame.disparity.d_q4.clone();
-  shown->people = people_;
-  shown->times = run_->times();
+  shown->left = {pipeline_->pair(), &pipeline_->pair()->left};
+  shown->frame = pipeline_->frame();
+  shown->people.assign(pipeline_->people().begin(), pipeline_->people().end());
+  shown->times = pipeline_->times();
   shown->interval_ms = interval_ms;
-  shown->skew_ms = static_cast<double>(now.frame.skew_ns) * 1e-6;
-  shown->latency_ms = live_ ? now_ms() - static_cast<double>(now.left.t_ns) * 1e-6
-                            : shown->times.engine_ms + (people_.empty() ? 0 : shown->times.tracker_ms);
+  shown->skew_ms = static_cast<double>(shown->frame->skew_ns) * 1e-6;
+  shown->latency_ms = live() ? now_ms() - static_cast<double>(shown->left->t_ns) * 1e-6
+                             : shown->times.engine_ms + (shown->people.empty() ? 0 : shown->times.tracker_ms);
   const std::lock_guard lock(mutex_);
   newest_ = std::move(shown);
-  status_.lines = written_;
 }
 
 /// Says it in the window; `for_good`: nothing more comes.
 void Player::fail(const Error& error, bool for_good) {
-  if (for_good) recording_.stop();
+  if (for_good) pipeline_->stop_recording();
   if (for_good || error.code == ErrorCode::kWriteFailed) failed_ = failed_.value_or(error);
   const std::lock_guard lock(mutex_);
   status_.problem = error.what;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "style.h"
+#include "timing.h"
 
 namespace duo::app::view {
 namespace {
@@ -48,10 +49,10 @@ Result<Sidebar> Sidebar::make(const PlayerOptions& options, const Player& player
   Sidebar out;
   out.scale_ = scale;
   out.device_ = std::move(device);
-  out.matcher_ = options.arm.engine.matcher;
+  out.matcher_ = options.tracking.engine.matcher;
   out.source_ = fmt::format("{}{}{}", options.left, options.right.empty() ? "" : ", ", options.right);
-  DUO_TRY_ASSIGN(out.parameters_, matcher_parameters(options.arm.engine.matcher, options.arm.engine.preset));
-  const auto overrides = options.arm.engine.setup().parameters;
+  DUO_TRY_ASSIGN(out.parameters_, matcher_parameters(options.tracking.engine.matcher, options.tracking.engine.preset));
+  const auto overrides = options.tracking.engine.setup().parameters;
   for (const ParameterInfo& info : out.parameters_) {
     const auto given = std::find_if(overrides.begin(), overrides.end(), [&](const auto& o) { return o.first == info.name; });
     out.values_.push_back(static_cast<int>(given != overrides.end() ? given->second : info.value));
@@ -73,6 +74,7 @@ bool Sidebar::draw(Player& player, Clicks& clicks, const Shown* shown, const std
   put_clicks(player, clicks, shown, status);
   put_playback(player, shown, status);
   put_recording(player, status);
+  put_outputs(player, status);
   put_joints(shown);
   put_speed();
   put_source(player, status);
@@ -174,6 +176,29 @@ void Sidebar::put_recording(Player& player, const PlayerStatus& status) const {
     colored(kBad, now.problem);
   else if (!now.name.empty())
     colored(kFaint, now.on ? "into " + now.name : now.pairs > 0 ? now.name + ": " + amount : "nothing recorded: no pair came");
+}
+
+/// A box per kind of output; beside it where the tracked frames go and how many went there.
+void Sidebar::put_outputs(Player& player, const PlayerStatus& status) {
+  if (!ImGui::CollapsingHeader("Outputs")) return;
+  const auto kinds = sink_kinds();
+  if (targets_.empty())
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+      const std::string given = status.outputs[i].name.empty() ? kinds[i].target : status.outputs[i].name;
+      std::snprintf(targets_.emplace_back().data(), kTarget, "%s", given.c_str());
+    }
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    const OutputStatus& output = status.outputs[i];
+    ImGui::PushID(static_cast<int>(i));
+    if (bool on = output.on; ImGui::Checkbox(kinds[i].label, &on)) player.put_out(i, on, targets_[i].data());
+    if (!kinds[i].is_file() && !output.on) {
+      ImGui::SameLine(110 * scale_);
+      ImGui::SetNextItemWidth(-1);
+      ImGui::InputText("##target", targets_[i].data(), kTarget);
+    }
+    if (!output.name.empty()) colored(kFaint, fmt::format("{}: {} frames", output.name, output.frames));
+    ImGui::PopID();
+  }
 }
 
 void Sidebar::put_joints(const Shown* shown) const {

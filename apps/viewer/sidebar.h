@@ -1,6 +1,7 @@
 // The column of controls beside the pictures.
 #pragma once
 
+#include <array>
 #include <deque>
 #include <memory>
 #include <string>
@@ -26,6 +27,7 @@ class Sidebar {
   void put_clicks(Player& player, Clicks& clicks, const Shown* shown, const PlayerStatus& status);
   void put_playback(Player& player, const Shown* shown, const PlayerStatus& status);
   void put_recording(Player& player, const PlayerStatus& status) const;
+  void put_outputs(Player& player, const PlayerStatus& status);
   void put_joints(const Shown* shown) const;
   void put_speed() const;
   void put_parameters(Player& player);
@@ -36,6 +38,8 @@ class Sidebar {
   std::vector<ParameterInfo> parameters_;
   std::vector<int> values_;
   std::vector<RigDoubt> doubts_;
+  static constexpr std::size_t kTarget = 64;
+  std::vector<std::array<char, kTarget>> targets_;  // host:port as its user types it, of each of sink_kinds()
   struct Speed {
     float engine_ms, tracker_ms, latency_ms, interval_ms;
   };

@@ -20,7 +20,7 @@ namespace {
 constexpr char kFooter[] =
     "Click hand, elbow and shoulder in the left camera's picture, which stands still meanwhile; then the arm is tracked.\n"
     "Keys: Space pause, Right one frame, Backspace undo a click, R record, Home restart, F12 screenshot, Q close.\n"
-    "With -o the tracked frames are written as track writes them, complete when the window closes.\n\n"
+    "Tracked frames are written and sent as track does, by the same options or the boxes in the window.\n\n"
     "Examples:\n"
     "  duoptic view synthetic                                                        a rendered person, live\n"
     "  duoptic view camera:0 camera:2 --rig rig.json\n"
@@ -187,7 +187,7 @@ Result<Exit> run(Options options, const CLI::App& app) {
   }
   options.player.on_news = Window::wake;
   std::unique_ptr<Window> window;  // outlives the player, which wakes it
-  DUO_TRY_ASSIGN(const auto player, Player::open(options.player));
+  DUO_TRY_ASSIGN(const auto player, Player::open(options.player, app));
   DUO_TRY_ASSIGN(window, Window::open("duoptic view", kWindow));
   set_style(window->scale());
   DUO_TRY_ASSIGN(Sidebar sidebar, Sidebar::make(options.player, *player, window->device(), window->scale()));
@@ -212,7 +212,7 @@ Command add(CLI::App& app) {
   sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); left out: the source's own");
   CLI::Option* loop = sub->add_flag("--loop", options->player.loop, "Start again at the end of a file");
   sub->add_flag("--paused", options->paused, "Wait at the first frame");
-  sub->add_option("-o,--output", options->player.lines, "File for the JSON lines of tracked frames")->type_name("FILE");
+  options->player.sinks.add_to(*sub);
   CLI::Option* shot = sub->add_option("--screenshot", options->screenshot, "Write a PNG of the window, then close it")
                           ->type_name("FILE")
                           ->excludes(loop);
@@ -221,7 +221,7 @@ Command add(CLI::App& app) {
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
       ->needs(shot)
       ->capture_default_str();
-  options->player.arm.add_to(*sub);
+  options->player.tracking.add_to(*sub);
   sub->footer(kFooter);
   return {sub, [options, sub] { return run(*options, *sub); }};
 }

@@ -59,6 +59,7 @@ struct Setup {
 class Engine {
  public:
   static constexpr int kMaxDisparity = 2048;
+  static constexpr int kSpareFrames = 3;  // one that waits, one that is tracked, one that is shown
   virtual ~Engine() = default;
   virtual const char* name() const = 0;
   virtual Result<void> prepare(const Setup& setup) = 0;
@@ -70,9 +71,10 @@ class Engine {
   virtual void look_at(std::span<const Window> windows) = 0;
   /// Starts work on a pair of the size given to prepare(); the pair must live until its collect() returns.
   virtual void submit(const Pair& pair) = 0;
-  /// The finished frame of the oldest pair submitted. What comes after may work on it in another thread: it stays as it is
-  /// while the next one is made, until a pair is submitted or a frame collected after that one was collected.
-  virtual const Frame& collect() = 0;
+  /// The finished frame of the oldest pair submitted. It belongs to whoever has its pointer, in any thread, and outlives the
+  /// engine. prepare() makes in_flight() + kSpareFrames frames, whose memory is used over and over; while all of them are held,
+  /// one more is made, and stays.
+  virtual std::shared_ptr<const Frame> collect() = 0;
   /// The device that computes, where that is not the CPU.
   virtual std::string device() const { return {}; }
   /// What happened since the last call that the user should know, in one line; else empty.

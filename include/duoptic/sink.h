@@ -49,12 +49,12 @@ struct TrackTimes {
   double engine_ms = 0, tracker_ms = 0;
 };
 
-/// One instant; everything lives until write() returns.
+/// One instant. `left` and `frame` may be kept; `people` live until write() returns.
 struct TrackedFrame {
-  std::int64_t number = 0;  // from 0, of the source
-  double t_s = 0;           // since the source's first picture
-  const Picture& left;      // raw
-  const Frame& frame;       // with disparity and colour
+  std::int64_t number = 0;              // from 0, of the source
+  double t_s = 0;                       // since the source's first picture
+  std::shared_ptr<const Picture> left;  // raw
+  std::shared_ptr<const Frame> frame;   // with disparity and colour
   std::span<const Person> people;
   std::optional<TrackTimes> times;  // written only when given, because they differ from run to run
 };
@@ -107,9 +107,11 @@ Result<std::unique_ptr<Sink>> make_osc(const std::string& target, Axes axes);
 /// with the same skeleton the first is sent.
 Result<std::unique_ptr<Sink>> make_vmc(const std::string& target);
 
-/// `sink` behind a thread and a queue, for live sources: write() copies what the sink wants and returns. The queue has room for
+/// `sink` behind a thread and a queue, for live sources: write() returns at once. The queue has room for
 /// two seconds of poses, or for four frames with their pictures; when it is full the oldest frame in it goes, and dropped()
 /// counts. Errors of `sink` come with the next call.
-std::unique_ptr<Sink> in_background(std::unique_ptr<Sink> sink);
+///
+/// Errors  the system gives no thread
+Result<std::unique_ptr<Sink>> in_background(std::unique_ptr<Sink> sink);
 
 }  // namespace duo

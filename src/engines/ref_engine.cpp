@@ -1,11 +1,12 @@
 // The reference engine: plain loops, one thread. Slow on purpose: it defines the right answer.
 
 #include <algorithm>
-#include <array>
+#include <utility>
 #include <variant>
 
 #include "core/check.h"
 #include "core/clock.h"
+#include "core/object_pool.h"
 #include "engines/engines.h"
 #include "engines/keep_windows.h"
 #include "engines/prepared.h"
@@ -27,7 +28,7 @@ class RefEngine final : public Engine {
 
   Result<void> prepare(const Setup& setup) override {
     DUO_TRY_ASSIGN(prepared_, prepare_setup(setup));
-    for (Frame& frame : frames_) frame = make_frame(prepared_);
+    frames_ = ObjectPool<Frame>(1 + kSpareFrames, [this] { return make_frame(prepared_); });
     Matchers::make(prepared_.matcher, match_setup(prepared_), matcher_);
     if (setup.fill) {
       unsmoothed_ = Image<std::uint16_t>(prepared_.size);
@@ -43,8 +44,8 @@ class RefEngine final : public Engine {
     DUO_CHECK(matcher_.has_value());
     DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
     const Setup& setup = prepared_.setup;
-    current_ ^= 1;
-    Frame& frame = frames_[current_];
+    current_ = frames_.lend();
+    Frame& frame = *current_;
     frame.sequence = pair.sequence;
     frame.t_ns = pair.left.t_ns;
     frame.skew_ns = pair.right.t_ns - pair.left.t_ns;
@@ -67,7 +68,7 @@ class RefEngine final : public Engine {
     timer_.stage("color");
   }
 
-  const Frame& collect() override { return frames_[current_]; }
+  std::shared_ptr<const Frame> collect() override { return std::exchange(current_, nullptr); }
 
  private:
   /// Raw colour to what the matcher sees. Denoising comes before resampling: only there is noise independent from pixel to
@@ -109,8 +110,8 @@ class RefEngine final : public Engine {
   Prepared prepared_;
   Matchers::Ref matcher_;
   std::vector<Window> windows_;
-  std::array<Frame, 2> frames_;  // the last one stays as it is while the next is made
-  unsigned current_ = 0;
+  ObjectPool<Frame> frames_;
+  std::shared_ptr<Frame> current_;   // until it is collected
   Image<std::uint16_t> unsmoothed_;  // disparities just filled
   Image<std::uint8_t> now_, next_;   // one view on its way through the denoising
   StageTimer timer_;

@@ -2,15 +2,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <memory>
 #include <new>
-#include <thread>
 #include <utility>
 #include <vector>
 
+#include "duoptic/bounded_queue.h"
 #include "core/check.h"
+#include "core/object_pool.h"
+#include "duoptic/worker.h"
 #include "engines/engines.h"
 #include "engines/simd_frames.h"
 
@@ -18,46 +18,52 @@ namespace duo {
 namespace {
 
 /// A thread that makes a frame while others make theirs.
-class Lane {
+class FrameThread {
  public:
-  Lane(const Prepared& prepared, int threads) : frames_(prepared, threads), thread_([this] { make_all(); }) {}
-  ~Lane() {
-    state_.wait(State::kMake);
-    tell(State::kStop);
-    thread_.join();
+  /// Errors  the system gives no thread
+  static Result<std::unique_ptr<FrameThread>> start(const Prepared& prepared, int threads) {
+    std::unique_ptr<FrameThread> out(new FrameThread(prepared, threads));
+    DUO_TRY_ASSIGN(out->worker_, Worker::start(
+                                     "make a frame", [p = out.get()](const std::stop_token&) { return p->make_all(); },
+                                     [p = out.get()](const Result<void>& result) { p->done_.close(result); }));
+    return out;
   }
+  ~FrameThread() { jobs_.close(); }
 
-  void submit(const Pair& pair, const std::vector<Window>& windows) {
-    pair_ = &pair;
-    windows_ = windows;
-    tell(State::kMake);
+  void submit(const Pair& pair, const std::vector<Window>& windows, std::shared_ptr<Frame> frame) {
+    job_.pair = &pair;
+    job_.windows = windows;
+    job_.frame = std::move(frame);
+    jobs_.put(job_);
   }
-  const Frame& collect() {
-    state_.wait(State::kMake);
-    return *frame_;
+  std::shared_ptr<const Frame> collect() {
+    std::shared_ptr<Frame> frame;
+    DUO_CHECK(done_.take(frame));
+    return frame;
   }
 
  private:
-  enum class State { kRest, kMake, kStop };
-  void tell(State state) {
-    state_ = state;
-    state_.notify_all();
-  }
-  void make_all() {
-    for (;;) {
-      state_.wait(State::kRest);
-      if (state_ == State::kStop) return;
-      frame_ = &frames_.make(*pair_, windows_);
-      tell(State::kRest);
+  struct Job {
+    const Pair* pair = nullptr;
+    std::vector<Window> windows;
+    std::shared_ptr<Frame> frame;
+  };
+
+  FrameThread(const Prepared& prepared, int threads) : frames_(prepared, threads) {}
+  Result<void> make_all() {
+    for (Job job;;) {
+      DUO_TRY_ASSIGN(const Taken taken, jobs_.take(job));
+      if (taken == Taken::kClosed) return {};
+      frames_.make(*job.pair, job.windows, *job.frame);
+      done_.put(job.frame);
     }
   }
 
   SimdFrames frames_;
-  const Pair* pair_ = nullptr;  // these are the thread's from kMake to kRest
-  std::vector<Window> windows_;
-  const Frame* frame_ = nullptr;
-  std::atomic<State> state_ = State::kRest;
-  std::thread thread_;  // last: it uses all of the above
+  Job job_;  // on its way into the queue
+  BoundedQueue<Job> jobs_{1, WhenFull::kWait};
+  BoundedQueue<std::shared_ptr<Frame>> done_{1, WhenFull::kWait};
+  Worker worker_;  // last: it uses all of the above
 };
 
 /// Threads that share a frame wait for each other's rows; those with frames of their own do not, but each frame takes longer,
@@ -72,26 +78,20 @@ class SimdEngine final : public Engine {
   explicit SimdEngine(int threads) : threads_(threads) {}
 
   const char* name() const override { return "simd"; }
-  int in_flight() const override { return std::max(1, static_cast<int>(lanes_.size())); }
+  int in_flight() const override { return std::max(1, static_cast<int>(threads_of_frames_.size())); }
   const std::optional<Rectified>& rectified() const override { return prepared_.geometry; }
 
   Result<void> prepare(const Setup& setup) override {
     DUO_TRY_ASSIGN(Prepared checked, prepare_setup(setup));
-    const bool was_prepared = alone_ != nullptr || !lanes_.empty();
+    const bool was_prepared = alone_ != nullptr || !threads_of_frames_.empty();
     rest();
     std::swap(prepared_, checked);
-    try {
-      make_frames();
-    } catch (const std::bad_alloc&) {
-      rest();
-      std::swap(prepared_, checked);
-      if (was_prepared) make_frames();  // there was memory for that
-      return Error{ErrorCode::kExhausted,
-                   fmt::format("cannot set up {}x{} pixels with {} disparities: out of memory; smaller pictures, fewer "
-                               "disparities or fewer paths need less",
-                               setup.size.width, setup.size.height, setup.max_disparity)};
-    }
-    return {};
+    const Result<void> made = make_frames();
+    if (made) return {};
+    rest();
+    std::swap(prepared_, checked);
+    if (was_prepared) DUO_CHECK(make_frames());  // there was memory for that
+    return made;
   }
 
   void look_at(std::span<const Window> windows) override { windows_.assign(windows.begin(), windows.end()); }
@@ -99,18 +99,21 @@ class SimdEngine final : public Engine {
   void submit(const Pair& pair) override {
     DUO_CHECK(prepared_.setup.size == pair.left.pixels.size() && prepared_.setup.size == pair.right.pixels.size());
     DUO_CHECK(count_ < in_flight());
-    if (alone_ != nullptr)
-      frame_ = &alone_->make(pair, windows_);
-    else
-      lane(first_ + count_).submit(pair, windows_);
+    std::shared_ptr<Frame> frame = frames_.lend();
+    if (alone_ != nullptr) {
+      alone_->make(pair, windows_, *frame);
+      frame_ = std::move(frame);
+    } else {
+      thread_of(first_ + count_).submit(pair, windows_, std::move(frame));
+    }
     ++count_;
   }
 
-  const Frame& collect() override {
+  std::shared_ptr<const Frame> collect() override {
     DUO_CHECK(count_ > 0);
     --count_;
-    if (alone_ != nullptr) return *frame_;
-    const Frame& frame = lane(first_).collect();
+    if (alone_ != nullptr) return std::move(frame_);
+    std::shared_ptr<const Frame> frame = thread_of(first_).collect();
     first_ = (first_ + 1) % in_flight();
     return frame;
   }
@@ -119,28 +122,40 @@ class SimdEngine final : public Engine {
   /// What speaks of the last setup goes first: there need not be memory for both.
   void rest() {
     alone_.reset();
-    lanes_.clear();
+    threads_of_frames_.clear();
+    frame_.reset();
+    frames_ = {};
     first_ = count_ = 0;
   }
-  void make_frames() {
+  Result<void> make_frames() {
     const int at_once = frames_at_once(prepared_.setup, threads_);
-    if (at_once == 1) {
-      alone_ = std::make_unique<SimdFrames>(prepared_, threads_);
-    } else {
-      for (int i = 0; i < at_once; ++i)
-        lanes_.push_back(std::make_unique<Lane>(prepared_, threads_ / at_once + (i < threads_ % at_once)));
+    try {
+      if (at_once == 1) alone_ = std::make_unique<SimdFrames>(prepared_, threads_);
+      for (int i = 0; at_once > 1 && i < at_once; ++i) {
+        DUO_TRY_ASSIGN(auto thread, FrameThread::start(prepared_, threads_ / at_once + (i < threads_ % at_once)));
+        threads_of_frames_.push_back(std::move(thread));
+      }
+      frames_ = ObjectPool<Frame>(static_cast<std::size_t>(at_once + kSpareFrames), [this] { return make_frame(prepared_); });
+    } catch (const std::bad_alloc&) {
+      const Setup& setup = prepared_.setup;
+      return Error{ErrorCode::kExhausted,
+                   fmt::format("cannot set up {}x{} pixels with {} disparities: out of memory; smaller pictures, fewer "
+                               "disparities or fewer paths need less",
+                               setup.size.width, setup.size.height, setup.max_disparity)};
     }
+    return {};
   }
 
-  Lane& lane(int frame) { return *lanes_[static_cast<std::size_t>(frame % in_flight())]; }
+  FrameThread& thread_of(int frame) { return *threads_of_frames_[static_cast<std::size_t>(frame % in_flight())]; }
 
   const int threads_;
   Prepared prepared_;
-  std::unique_ptr<SimdFrames> alone_;         // after what they refer to: either one that does all,
-  std::vector<std::unique_ptr<Lane>> lanes_;  // or several that take turns
-  const Frame* frame_ = nullptr;
-  std::vector<Window> windows_;  // of the next submit
-  int first_ = 0, count_ = 0;    // in flight: count_ of them, the oldest in lane first_
+  ObjectPool<Frame> frames_;
+  std::unique_ptr<SimdFrames> alone_;                            // after what they refer to: either one that does all,
+  std::vector<std::unique_ptr<FrameThread>> threads_of_frames_;  // or several that take turns
+  std::shared_ptr<const Frame> frame_;                           // of alone_, until it is collected
+  std::vector<Window> windows_;                                  // of the next submit
+  int first_ = 0, count_ = 0;                                    // in flight: count_ of them, the oldest in thread first_
 };
 
 }  // namespace

@@ -16,7 +16,6 @@
 namespace duo {
 
 SimdFrames::SimdFrames(const Prepared& prepared, int threads) : prepared_(prepared), pool_(threads), governor_(pool_.most()) {
-  for (Frame& frame : frames_) frame = make_frame(prepared);
   Matchers::make(pool_, prepared.matcher, match_setup(prepared), matcher_);
   if (prepared.setup.fill) {
     unsmoothed_ = Image<std::uint16_t>(prepared.size);
@@ -26,12 +25,10 @@ SimdFrames::SimdFrames(const Prepared& prepared, int threads) : prepared_(prepar
   next_ = Image<std::uint8_t>(prepared.setup.size);
 }
 
-const Frame& SimdFrames::make(const Pair& pair, std::span<const Window> windows) {
+void SimdFrames::make(const Pair& pair, std::span<const Window> windows, Frame& frame) {
   DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
   const Setup& setup = prepared_.setup;
   pool_.use(governor_.threads());
-  current_ ^= 1;
-  Frame& frame = frames_[current_];
   frame.sequence = pair.sequence;
   frame.t_ns = pair.left.t_ns;
   frame.skew_ns = pair.right.t_ns - pair.left.t_ns;
@@ -58,7 +55,6 @@ const Frame& SimdFrames::make(const Pair& pair, std::span<const Window> windows)
   timer_.stage("depth");
   const Pool::Effort effort = pool_.take_effort();
   governor_.made(effort.wall_ns, effort.cpu_ns);
-  return frame;
 }
 
 /// Raw colour to what the matcher sees. Denoising comes before resampling: only there is noise independent from pixel to

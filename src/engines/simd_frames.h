@@ -1,7 +1,6 @@
 // Frames on the CPU, one after the other: what the simd engine's threads do.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,7 +13,7 @@
 
 namespace duo {
 
-/// Makes a frame of a pair with a pool of threads and memory of its own; allocates nothing once it is there.
+/// Makes a frame of a pair with a pool of threads and scratch memory of its own; allocates nothing once it is there.
 ///
 /// Threads  one caller at a time; the pool's work for it
 class SimdFrames {
@@ -24,8 +23,8 @@ class SimdFrames {
   SimdFrames(const SimdFrames&) = delete;
   SimdFrames& operator=(const SimdFrames&) = delete;
 
-  /// The frame stays as it is until the one after the next is begun. Windows: see Engine::look_at().
-  const Frame& make(const Pair& pair, std::span<const Window> windows);
+  /// `frame` comes from make_frame(). Windows: see Engine::look_at().
+  void make(const Pair& pair, std::span<const Window> windows, Frame& frame);
 
  private:
   void prepare_view(const Picture& picture, const ResampleMap* map, Image<std::uint8_t>& out, Image<std::uint8_t>& inside);
@@ -36,8 +35,6 @@ class SimdFrames {
   Pool pool_;
   Governor governor_;
   Matchers::Simd matcher_;
-  std::array<Frame, 2> frames_;
-  unsigned current_ = 0;
   std::optional<simd::WeightedMedianScratch> smooth_scratch_;
   Image<std::uint16_t> unsmoothed_;  // disparities just filled
   Image<std::uint8_t> now_, next_;   // one view on its way through the denoising

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/check.h"
+#include "core/object_pool.h"
 #include "engines/engines.h"
 #include "engines/keep_windows.h"
 #include "engines/vulkan_frames.h"
@@ -45,7 +46,7 @@ class VulkanEngine final : public Engine {
     first_ = count_ = 0;
     slots_ = work_ != nullptr ? work_->slots() : vk::Frames::kInFlight;
     if (work_ == nullptr) return prepare_cpu();
-    for (Frame& frame : frames_) frame = work_->make_frame();
+    frames_ = ObjectPool<Frame>(in_flight() + kSpareFrames, [this] { return work_->make_frame(); });
     return {};
   }
 
@@ -62,15 +63,15 @@ class VulkanEngine final : public Engine {
     if (const auto started = work_->submit(slot, pair); !started) go_on_with_cpu(started.error());
   }
 
-  const Frame& collect() override {
+  std::shared_ptr<const Frame> collect() override {
     DUO_CHECK(count_ > 0);
     const int slot = first_;
     first_ = (first_ + 1) % slots_;
     --count_;
     const Pair& pair = *pairs_[static_cast<std::size_t>(slot)];
     if (work_ != nullptr) {
-      current_ ^= 1;
-      Frame& frame = frames_[current_];
+      const std::shared_ptr<Frame> made = frames_.lend();
+      Frame& frame = *made;
       const auto done = work_->collect(slot, frame);
       if (done) {
         frame.sequence = pair.sequence;
@@ -78,7 +79,7 @@ class VulkanEngine final : public Engine {
         frame.skew_ns = pair.right.t_ns - pair.left.t_ns;
         keep_windows(windows_of_[static_cast<std::size_t>(slot)], frame);
         frame.on_device = work_->on_device() != nullptr ? &on_device_[static_cast<std::size_t>(slot)] : nullptr;
-        return frame;
+        return made;
       }
       go_on_with_cpu(done.error());
     }
@@ -136,8 +137,7 @@ class VulkanEngine final : public Engine {
   std::unique_ptr<Prepared> prepared_ = std::make_unique<Prepared>();
   std::unique_ptr<vk::Frames> work_;  // after what it refers to
   std::unique_ptr<Engine> cpu_;       // once the device was lost, and for setups that are none for it
-  std::array<Frame, 2> frames_;       // the last one stays as it is while the next is made
-  unsigned current_ = 0;
+  ObjectPool<Frame> frames_;
   std::array<const Pair*, vk::Frames::kSlots> pairs_{};  // in flight: count_ of them from first_
   std::vector<Window> windows_;                          // of the next submit
   std::array<std::vector<Window>, vk::Frames::kSlots> windows_of_;

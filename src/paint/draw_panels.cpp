@@ -159,29 +159,29 @@ void put_hues(View<Rgb8> dst, const Layout& layout) {
 Size panels_size(const TrackHeader& header) { return Layout(header.size).whole(); }
 
 Image<Rgb8> draw_panels(const TrackedFrame& frame, const TrackHeader& header, const DisparityRange& range) {
-  DUO_CHECK(frame.left.pixels.size() == header.size && frame.frame.color.size() == frame.frame.disparity.d_q4.size());
+  DUO_CHECK(frame.left->pixels.size() == header.size && frame.frame->color.size() == frame.frame->disparity.d_q4.size());
   const Layout layout(header.size);
   Image<Rgb8> out(layout.whole());
   for (int y = 0; y < out.height(); ++y) std::fill_n(out.row(y), out.width(), kGround);
   const Cell camera(out, layout, 0, 0), depth(out, layout, 0, 1), region(out, layout, 1, 0), hue(out, layout, 1, 1);
 
-  fit(frame.left.pixels.clone(), camera.picture);
+  fit(frame.left->pixels.clone(), camera.picture);
   stroke(shapes_of(frame.people, header), camera.picture, header, layout);
   put_title(camera, layout, "left camera: joints and bones", fmt::format("frame {}   {:.2f} s", frame.number, frame.t_s));
   put_labels(camera.caption, frame.people, layout);
 
-  Image<Rgb8> drawn(frame.frame.color.size());
-  color_disparity(frame.frame.disparity.d_q4, range, drawn);
+  Image<Rgb8> drawn(frame.frame->color.size());
+  color_disparity(frame.frame->disparity.d_q4, range, drawn);
   fit(drawn, depth.picture);
   put_title(depth, layout, "depth", "metres");
   draw_legend(depth.caption, range, &header.rectified);
 
-  draw_regions(frame.frame, header.rectified, frame.people, drawn);
+  draw_regions(*frame.frame, header.rectified, frame.people, drawn);
   fit(drawn, region.picture);
   put_title(region, layout, "body", "by nearest joint");
   put_shades(region.caption, header, layout);
 
-  draw_hue(frame.frame.color, drawn);
+  draw_hue(frame.frame->color, drawn);
   fit(drawn, hue.picture);
   put_title(hue, layout, "hue and saturation", "hue, degrees; brightness = saturation");
   put_hues(hue.caption, layout);

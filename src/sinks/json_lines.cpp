@@ -79,12 +79,12 @@ std::string frame_line(const TrackedFrame& frame, bool live) {
   std::vector<std::string> people;
   for (const Person& person : frame.people) people.push_back(text_of(person));
   std::string line = fmt::format(R"({{"type":"frame","frame":{},"t_s":{})", frame.number, number(frame.t_s, 6));
-  if (live) line += fmt::format(R"(,"skew_ms":{})", number(static_cast<double>(frame.frame.skew_ns) * 1e-6, 3));
+  if (live) line += fmt::format(R"(,"skew_ms":{})", number(static_cast<double>(frame.frame->skew_ns) * 1e-6, 3));
   line += fmt::format(R"(,"people":[{}])", fmt::join(people, ","));
   if (frame.times)
     line += fmt::format(R"(,"engine_ms":{},"tracker_ms":{})", number(frame.times->engine_ms, 3),
                         number(frame.times->tracker_ms, 3));
-  if (frame.times && live) line += fmt::format(R"(,"latency_ms":{})", number(since_ms(frame.left.t_ns), 3));
+  if (frame.times && live) line += fmt::format(R"(,"latency_ms":{})", number(since_ms(frame.left->t_ns), 3));
   return line + "}\n";
 }
 

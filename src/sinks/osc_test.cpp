@@ -244,7 +244,7 @@ class SlowSink final : public Sink {
   Result<void> write(const TrackedFrame& frame) override {
     std::unique_lock lock(log_.mutex);
     log_.written.push_back(frame.number);
-    log_.pixel = frame.frame.color.at(1, 1);
+    log_.pixel = frame.frame->color.at(1, 1);
     log_.changed.notify_all();
     EXPECT_TRUE(log_.changed.wait_for(lock, std::chrono::seconds(10), [&] { return log_.allowed > 0; }));
     --log_.allowed;
@@ -258,7 +258,7 @@ class SlowSink final : public Sink {
 
 TEST(InBackground, ASlowSinkSlowsNothingAndTheOldestGo) {
   SlowSink::Log log;
-  const auto sink = in_background(std::make_unique<SlowSink>(log));
+  const auto sink = *in_background(std::make_unique<SlowSink>(log));
   for (std::int64_t i = 0; i < 10; ++i) {
     Instant instant;  // gone before it is written
     instant.frame.color = Image<Rgb8>({4, 4});
@@ -278,7 +278,7 @@ TEST(InBackground, AFailureIsToldByTheNextCall) {
   SlowSink::Log log;
   log.fails = true;
   log.allow(100);
-  const auto sink = in_background(std::make_unique<SlowSink>(log));
+  const auto sink = *in_background(std::make_unique<SlowSink>(log));
   Instant instant;
   instant.frame.color = Image<Rgb8>({4, 4});
   ASSERT_TRUE(sink->write(instant.tracked(0)));

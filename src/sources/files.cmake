@@ -4,8 +4,6 @@ pkg_check_modules(LIBAV REQUIRED IMPORTED_TARGET libavformat libavcodec libswsca
 pkg_check_modules(CURL REQUIRED IMPORTED_TARGET libcurl)
 target_link_libraries(duoptic PRIVATE PkgConfig::LIBAV PkgConfig::CURL)
 target_sources(duoptic PRIVATE
-  ${PROJECT_SOURCE_DIR}/src/sources/block_flow.cpp
-  ${PROJECT_SOURCE_DIR}/src/sources/in_step.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/open_source.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/gst_process.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/http_bytes.cpp
@@ -19,7 +17,6 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/video.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/with_skew.cpp)
 duoptic_test(sources/files ${PROJECT_SOURCE_DIR}/src/sources/files_test.cpp)
-duoptic_test(sources/in_step ${PROJECT_SOURCE_DIR}/src/sources/in_step_test.cpp)
 foreach(file camera clock_model decode device look modes system_calls)
   target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/camera/${file}.cpp)
 endforeach()

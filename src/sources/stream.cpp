@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
-#include <thread>
 #include <utility>
 
+#include "duoptic/bounded_queue.h"
 #include "core/clock.h"
+#include "duoptic/worker.h"
 #include "sources/stream_input.h"
 
 namespace duo {
@@ -24,81 +24,75 @@ constexpr auto kGoodbye = std::chrono::seconds(3);
 /// way to end that.
 struct StreamState {
   std::string name;
-  std::mutex mutex;
-  std::condition_variable changed;
-  Picture newest;             // stamped with its arrival
-  std::uint64_t arrived = 0;  // pictures so far
-  double rate_hz = 0;
-  std::string trouble, why;  // why: it could not be opened
-  std::atomic<bool> stopped = false;
-  bool ended = false;
+  BoundedQueue<Picture> pictures{1, WhenFull::kDropOldest};  // stamped with their arrival
+  double rate_hz = 0;                                        // from the first picture on
+  std::mutex mutex;                                          // of trouble
+  std::string trouble;
 };
 
 /// Until the stream breaks off or is no longer wanted.
 ///
 /// Returns  "" or why it could not be opened
-std::string read_stream(StreamState& state) {
-  StreamInput input([&] { return state.stopped.load(); });
+std::string read_stream(StreamState& state, std::uint64_t& arrived, const std::stop_token& stop) {
+  StreamInput input([&] { return stop.stop_requested(); });
   if (std::string why = input.open(state.name); !why.empty()) return why;
   Picture picture;
   while (input.next(picture)) {
-    const std::lock_guard lock(state.mutex);
-    if (state.stopped) break;
-    std::swap(state.newest, picture);
-    state.newest.t_ns = wall_ns();
-    if (state.arrived++ == 0) state.rate_hz = input.rate_hz();
-    state.trouble.clear();
-    state.changed.notify_all();
+    picture.t_ns = wall_ns();
+    picture.sequence = arrived;
+    if (arrived++ == 0) state.rate_hz = input.rate_hz();
+    {
+      const std::lock_guard lock(state.mutex);
+      state.trouble.clear();
+    }
+    if (!state.pictures.put(picture)) break;
   }
   return {};
 }
 
-void run_stream(const std::shared_ptr<StreamState>& state) {
+Error no_picture(const std::string& name, const std::string& why) {
+  return {ErrorCode::kNotFound,
+          fmt::format("cannot open stream {}: {}; {}", name, why.empty() ? "it gives no picture" : why,
+                      name.starts_with(kGstPrefix)
+                          ? "does the pipeline run with gst-launch-1.0 and '! videoconvert ! autovideosink' after it?"
+                          : "is its camera on, and the address right?")};
+}
+
+/// Opens a stream that gave pictures again and again.
+///
+/// Errors  it gives none from the start
+Result<void> run_stream(StreamState& state, const std::stop_token& stop) {
   av_log_set_level(AV_LOG_QUIET);  // what is wrong is said in our results
-  while (true) {
-    const std::string why = read_stream(*state);
-    std::unique_lock lock(state->mutex);
-    state->why = why;
-    state->trouble = fmt::format("{} is away: {}; opening it again", state->name, why.empty() ? "it gives no pictures" : why);
-    state->changed.notify_all();
-    state->changed.wait_for(lock, kTryAgain, [&] { return state->stopped.load(); });
-    if (state->stopped) break;
+  std::condition_variable_any rest;
+  for (std::uint64_t arrived = 0; !stop.stop_requested();) {
+    const std::string why = read_stream(state, arrived, stop);
+    if (arrived == 0) return no_picture(state.name, why);
+    std::unique_lock lock(state.mutex);
+    state.trouble = fmt::format("{} is away: {}; opening it again", state.name, why.empty() ? "it gives no pictures" : why);
+    rest.wait_for(lock, stop, kTryAgain, [] { return false; });
   }
-  const std::lock_guard lock(state->mutex);
-  state->ended = true;
-  state->changed.notify_all();
+  return {};
 }
 
 class Stream final : public Source {
  public:
-  explicit Stream(const std::string& name) : state_(std::make_shared<StreamState>()) {
-    state_->name = name;
-    thread_ = std::thread([state = state_] { run_stream(state); });
-  }
+  explicit Stream(const std::string& name) : state_(std::make_shared<StreamState>()) { state_->name = name; }
   ~Stream() override {
-    std::unique_lock lock(state_->mutex);
-    state_->stopped = true;
-    state_->changed.notify_all();
-    const bool ended = state_->changed.wait_for(lock, kGoodbye, [this] { return state_->ended; });
-    lock.unlock();
-    if (ended)
-      thread_.join();
-    else
-      thread_.detach();
+    reader_.ask_to_stop();
+    state_->pictures.close();
+    if (reader_.started() && !reader_.ends_within(kGoodbye)) reader_.detach();
   }
 
   /// Waits for the first picture, which tells the size.
   Result<void> start() {
-    std::unique_lock lock(state_->mutex);
-    state_->changed.wait_for(lock, kFirstPicture, [this] { return state_->arrived > 0 || !state_->trouble.empty(); });
-    if (state_->arrived == 0)
-      return Error{
-          ErrorCode::kNotFound,
-          fmt::format("cannot open stream {}: {}; {}", state_->name, state_->why.empty() ? "it gives no picture" : state_->why,
-                      state_->name.starts_with(kGstPrefix)
-                          ? "does the pipeline run with gst-launch-1.0 and '! videoconvert ! autovideosink' after it?"
-                          : "is its camera on, and the address right?")};
-    size_ = state_->newest.pixels.size();
+    DUO_TRY_ASSIGN(reader_, Worker::start(
+                                "read stream " + state_->name,
+                                [state = state_](const std::stop_token& stop) { return run_stream(*state, stop); },
+                                [state = state_](const Result<void>& result) { state->pictures.close(result); }));
+    DUO_TRY_ASSIGN(const Taken taken, state_->pictures.take(first_, kFirstPicture));
+    if (taken != Taken::kValue) return no_picture(state_->name, {});
+    size_ = first_.pixels.size();
+    has_first_ = true;
     if (state_->rate_hz >= 1 && state_->rate_hz <= 1000) frame_s_ = 1 / state_->rate_hz;
     return {};
   }
@@ -108,31 +102,31 @@ class Stream final : public Source {
   bool still() const override { return false; }
   double frame_s() const override { return frame_s_; }
   bool live() const override { return true; }
-  std::int64_t dropped() const override { return dropped_; }
+  std::int64_t dropped() const override { return state_->pictures.dropped(); }
   std::string warning() const override {
     const std::lock_guard lock(state_->mutex);
     return state_->trouble;
   }
 
   Result<Next> next(Picture& into) override {
-    std::unique_lock lock(state_->mutex);
-    if (!state_->changed.wait_for(lock, kStreamPatience, [this] { return state_->arrived > given_; })) return Next::kNothing;
-    if (state_->newest.pixels.size() != size_)
+    if (std::exchange(has_first_, false)) {
+      std::swap(into, first_);
+      return Next::kPicture;
+    }
+    DUO_TRY_ASSIGN(const Taken taken, state_->pictures.take(into, kStreamPatience));
+    if (taken != Taken::kValue) return Next::kNothing;
+    if (into.pixels.size() != size_)
       return Error{ErrorCode::kUnsupported, fmt::format("cannot read stream {}: its pictures change size", state_->name)};
-    std::swap(into, state_->newest);  // what was given last holds the next one's memory
-    into.sequence = state_->arrived - 1;
-    dropped_ += static_cast<std::int64_t>(state_->arrived - given_ - 1);
-    given_ = state_->arrived;
     return Next::kPicture;
   }
 
  private:
   std::shared_ptr<StreamState> state_;
-  std::thread thread_;
   Size size_;
   double frame_s_ = 1.0 / 30;
-  std::uint64_t given_ = 0;
-  std::atomic<std::int64_t> dropped_ = 0;
+  Picture first_;  // has told the size, and was not given yet
+  bool has_first_ = false;
+  Worker reader_;
 };
 
 }  // namespace

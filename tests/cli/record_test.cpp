@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
+#include "duoptic/pipeline.h"
 #include "duoptic/rig.h"
 #include "duoptic/source.h"
 #include "duoptic/synthetic.h"
@@ -188,6 +190,59 @@ TEST_F(Record, RealTimeTakesNewestFirst) {
   const std::string text = bytes_of(at("live.jsonl"));
   EXPECT_GE(std::count(text.begin(), text.end(), '\n'), 2);
   EXPECT_NE(ended.err.find("frames/s"), std::string::npos) << ended.err;
+}
+
+// The right pictures are taken 12 ms late and the person moves: `depth` writes the disparities that `track` looks at, which are
+// not those of the pairs as they come.
+TEST(RecordWithSkew, DepthAndTrackHaveTheSameDisparities) {
+  constexpr int kPairs = 4;
+  const test::TempFolder folder;
+  auto clip = SyntheticClip::open({.size = {160, 120}, .script = "wave", .frames = 40, .skew_s = 0.012}, 2);
+  ASSERT_TRUE(clip) << clip.error().what;
+  auto left = AviWriter::open(folder / "left.avi", {160, 120}, 30, 90),
+       right = AviWriter::open(folder / "right.avi", {160, 120}, 30, 90);
+  ASSERT_TRUE(left && right);
+  for (int i = 0; i < kPairs; ++i) {
+    const Pair pair = clip->frame(17 + i).pair;
+    ASSERT_TRUE(left->write(pair.left.pixels) && right->write(pair.right.pixels));
+  }
+  ASSERT_TRUE(left->finish() && right->finish() && save_rig(clip->rig(), folder / "rig.json"));
+  const auto run = [&](const std::string& arguments) { return test::run_tool(folder / "", arguments); };
+  ASSERT_EQ(run("record left.avi right.avi --rig rig.json --skew-ms 12 -o late.mkv").exit, 0);
+  const Ended depth = run("depth late.mkv --matcher pyramid --max-disparity 32 -o out");
+  ASSERT_EQ(depth.exit, 0) << depth.err;
+
+  const auto frames_of = [&](bool late) {  // as track has them
+    PipelineSetup setup;
+    setup.tracker = "arm";
+    setup.frames.matcher = "pyramid";
+    setup.frames.max_disparity = 32;
+    setup.frames.many_at_once = true;
+    setup.frames.rig = clip->rig();
+    auto pairs = late ? open_pairs(folder / "late.mkv", "") : open_pairs(folder / "left.avi", folder / "right.avi");
+    EXPECT_TRUE(pairs);
+    auto pipeline = Pipeline::open(std::move(*pairs), setup);
+    EXPECT_TRUE(pipeline);
+    std::vector<std::shared_ptr<const Frame>> frames;
+    while (*pipeline->next() == Next::kPicture) frames.push_back(pipeline->frame());
+    return frames;
+  };
+  const auto tracked = frames_of(true), as_they_came = frames_of(false);
+  ASSERT_EQ(tracked.size(), std::size_t{kPairs});
+  ASSERT_EQ(as_they_came.size(), std::size_t{kPairs});
+  int differ = 0, moved = 0;
+  for (std::size_t i = 0; i < tracked.size(); ++i) {
+    const auto written = read_pfm(folder / ("out/frame_00000" + std::to_string(i)) / "disparity.pfm");
+    ASSERT_TRUE(written) << written.error().what;
+    for (int y = 0; y < written->height(); ++y)
+      for (int x = 0; x < written->width(); ++x) {
+        const std::uint16_t want = tracked[i]->disparity.d_q4.at(y, x);
+        differ += want == Disparity::kNone ? !std::isinf(written->at(y, x)) : written->at(y, x) != want / 16.0f;
+        moved += want != as_they_came[i]->disparity.d_q4.at(y, x);
+      }
+  }
+  EXPECT_EQ(differ, 0);
+  EXPECT_GT(moved, 20);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
   unsigned sum = 0;
   const auto frame = [&] {
     (*engine)->submit(scene.pair);
-    sum += (*engine)->collect().disparity.d_q4.at(60, 80);
+    sum += (*engine)->collect()->disparity.d_q4.at(60, 80);
   };
   frame();
   CALLGRIND_START_INSTRUMENTATION;

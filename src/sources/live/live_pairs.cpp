@@ -4,14 +4,12 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <mutex>
-#include <new>
-#include <optional>
-#include <thread>
 #include <utility>
 
+#include "duoptic/bounded_queue.h"
 #include "core/check.h"
+#include "duoptic/worker.h"
 #include "sources/live/pairing.h"
 
 namespace duo {
@@ -20,12 +18,20 @@ namespace {
 class LivePairs final : public PairSource {
  public:
   LivePairs(std::unique_ptr<Source> left, std::unique_ptr<Source> right)
-      : sources_{std::move(left), std::move(right)},
-        pairing_(std::min(sources_[0]->frame_s(), sources_[1]->frame_s())),
-        threads_{std::thread([this] { run(CameraSide::kLeft); }), std::thread([this] { run(CameraSide::kRight); })} {}
+      : sources_{std::move(left), std::move(right)}, pairing_(std::min(sources_[0]->frame_s(), sources_[1]->frame_s())) {}
+
+  Result<void> start() {
+    for (const CameraSide side : {CameraSide::kLeft, CameraSide::kRight}) {
+      DUO_TRY_ASSIGN(readers_[static_cast<std::size_t>(side)],
+                     Worker::start(
+                         "take the next picture", [this, side](const std::stop_token& stop) { return read(side, stop); },
+                         [this](const Result<void>& result) { pairs_.close(result); }));
+    }
+    return {};
+  }
+
   ~LivePairs() override {
-    stopped_ = true;
-    for (std::thread& thread : threads_) thread.join();
+    for (Worker& reader : readers_) reader.ask_to_stop();  // both at once: each may have to wait for its camera
   }
 
   Size size() const override { return sources_[0]->size(); }
@@ -33,67 +39,52 @@ class LivePairs final : public PairSource {
   bool still() const override { return false; }
   double frame_s() const override { return std::max(sources_[0]->frame_s(), sources_[1]->frame_s()); }
   bool live() const override { return true; }
-  std::int64_t dropped() const override {
-    const std::lock_guard lock(mutex_);
-    return pairing_.dropped();
-  }
+  std::int64_t dropped() const override { return pairs_.dropped(); }
   std::string warning() const override {
     const std::string left = sources_[0]->warning(), right = sources_[1]->warning();
     return left + (left.empty() || right.empty() ? "" : "; ") + right;
   }
 
   Result<Next> next(Pair& into) override {
-    constexpr auto kPatience = std::chrono::milliseconds(500);
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, kPatience, [this] { return pairing_.ready() || ended_; });
-    if (pairing_.ready()) {
-      pairing_.take(into);
-      return Next::kPicture;
-    }
-    if (ended_) return *ended_;
-    return Next::kNothing;
+    DUO_TRY_ASSIGN(const Taken taken, pairs_.take(into, std::chrono::milliseconds(500)));
+    if (taken == Taken::kClosed) return end_.load();
+    return taken == Taken::kValue ? Next::kPicture : Next::kNothing;
   }
 
  private:
-  void run(CameraSide side) {
+  /// Until one of both ends.
+  Result<void> read(CameraSide side, const std::stop_token& stop) {
     Source& source = *sources_[static_cast<std::size_t>(side)];
     Picture picture;
-    while (!stopped_) {
-      Result<Next> next = next_of(source, picture);
-      if (next && *next == Next::kNothing) continue;
+    while (!stop.stop_requested()) {
+      DUO_TRY_ASSIGN(const Next next, source.next(picture));
+      if (next == Next::kNothing) continue;
+      if (next != Next::kPicture) {
+        end_ = next;
+        break;
+      }
       const std::lock_guard lock(mutex_);
-      if (next && *next == Next::kPicture)
-        pairing_.add(side, picture);
-      else
-        ended_ = std::move(next);
-      changed_.notify_all();
-      if (ended_) return;
+      if (pairing_.add(side, picture, paired_) && !pairs_.put(paired_)) break;
     }
-  }
-
-  /// Nothing may be thrown out of a thread.
-  static Result<Next> next_of(Source& source, Picture& picture) {
-    try {
-      return source.next(picture);
-    } catch (const std::bad_alloc&) {
-      return Error{ErrorCode::kUnsupported, "cannot take the next picture: out of memory; smaller pictures need less"};
-    }
+    return {};
   }
 
   const std::array<std::unique_ptr<Source>, 2> sources_;
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
+  BoundedQueue<Pair> pairs_{1, WhenFull::kDropOldest};
+  std::atomic<Next> end_ = Next::kEnd;
+  std::mutex mutex_;  // of what follows
   Pairing pairing_;
-  std::optional<Result<Next>> ended_;  // an end or an error of either
-  std::atomic<bool> stopped_ = false;
-  std::array<std::thread, 2> threads_;  // last: they use all of the above
+  Pair paired_;                    // on its way from pairing_ to pairs_
+  std::array<Worker, 2> readers_;  // last: they use all of the above
 };
 
 }  // namespace
 
-std::unique_ptr<PairSource> make_live_pairs(std::unique_ptr<Source> left, std::unique_ptr<Source> right) {
+Result<std::unique_ptr<PairSource>> make_live_pairs(std::unique_ptr<Source> left, std::unique_ptr<Source> right) {
   DUO_CHECK(left->live() && right->live() && left->size() == right->size());
-  return std::make_unique<LivePairs>(std::move(left), std::move(right));
+  auto pairs = std::make_unique<LivePairs>(std::move(left), std::move(right));
+  DUO_TRY(pairs->start());
+  return std::unique_ptr<PairSource>(std::move(pairs));
 }
 
 }  // namespace duo

@@ -11,6 +11,8 @@ namespace duo {
 /// gives kNothing, and warning() says which.
 ///
 /// Both must be live and of the same size.
-std::unique_ptr<PairSource> make_live_pairs(std::unique_ptr<Source> left, std::unique_ptr<Source> right);
+///
+/// Errors  the system gives no thread
+Result<std::unique_ptr<PairSource>> make_live_pairs(std::unique_ptr<Source> left, std::unique_ptr<Source> right);
 
 }  // namespace duo

@@ -60,33 +60,29 @@ Picture taken_at(double ms, std::uint64_t n = 0) {
 
 TEST(Pairs, TheNearestWithinHalfAFrameAndEachOnce) {
   Pairing pairing(1.0 / 30);
+  Pair pair;
   const auto add = [&](CameraSide side, double ms) {
     Picture picture = taken_at(ms);
-    pairing.add(side, picture);
+    return pairing.add(side, picture, pair);
   };
-  Pair pair;
   const auto expect_pair = [&](double left_ms, double right_ms) {
-    ASSERT_TRUE(pairing.ready());
-    pairing.take(pair);
     EXPECT_EQ(pair.left.t_ns, std::llround(left_ms * 1e6));
     EXPECT_EQ(pair.right.t_ns, std::llround(right_ms * 1e6));
   };
-  add(CameraSide::kLeft, 0);
-  add(CameraSide::kLeft, 33.3);
-  EXPECT_FALSE(pairing.ready());
-  add(CameraSide::kRight, 23.3);  // nearer to the second
+  EXPECT_FALSE(add(CameraSide::kLeft, 0));
+  EXPECT_FALSE(add(CameraSide::kLeft, 33.3));
+  EXPECT_TRUE(add(CameraSide::kRight, 23.3));  // nearer to the second
   expect_pair(33.3, 23.3);
   EXPECT_EQ(pairing.lonely(), 1);
-  add(CameraSide::kRight, 56.6);
-  add(CameraSide::kLeft, 66.6);
-  add(CameraSide::kRight, 90);
-  add(CameraSide::kLeft, 100);  // nobody took the pair before
+  EXPECT_FALSE(add(CameraSide::kRight, 56.6));
+  EXPECT_TRUE(add(CameraSide::kLeft, 66.6));
+  expect_pair(66.6, 56.6);
+  EXPECT_FALSE(add(CameraSide::kRight, 90));
+  EXPECT_TRUE(add(CameraSide::kLeft, 100));
   expect_pair(100, 90);
-  EXPECT_EQ(pairing.dropped(), 1);
   EXPECT_EQ(pair.sequence, 2u);
-  for (int i = 0; i < 10; ++i) add(CameraSide::kLeft, 133 + 33.3 * i);  // the right camera is away
-  EXPECT_FALSE(pairing.ready());
-  add(CameraSide::kRight, 440);
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(add(CameraSide::kLeft, 133 + 33.3 * i));  // the right camera is away
+  EXPECT_TRUE(add(CameraSide::kRight, 440));
   expect_pair(133 + 33.3 * 9, 440);
 }
 
@@ -106,7 +102,7 @@ TEST(LivePairs, RightPairsWithTheirTrueSkewThroughJitterLossesAndUnplugging) {
   }
   auto both = open_cameras(desk.calls, "camera:0", "camera:2", kWish);
   ASSERT_TRUE(both) << both.error().what;
-  const auto pairs = make_live_pairs(std::move((*both)[0]), std::move((*both)[1]));
+  const auto pairs = *make_live_pairs(std::move((*both)[0]), std::move((*both)[1]));
   EXPECT_TRUE(pairs->live());
   Pair pair;
   int given = 0, right = 0;
@@ -145,7 +141,7 @@ TEST(LivePairs, BothUnpluggedOverAndOver) {
   desk.speed = 100;
   auto both = open_cameras(desk.calls, "camera:0", "camera:2", kWish);
   ASSERT_TRUE(both) << both.error().what;
-  const auto pairs = make_live_pairs(std::move((*both)[0]), std::move((*both)[1]));
+  const auto pairs = *make_live_pairs(std::move((*both)[0]), std::move((*both)[1]));
   Pair pair;
   std::mt19937 random(1);
   for (int i = 0; i < 1000; ++i) {

@@ -4,8 +4,6 @@
 #include <cstdlib>
 #include <utility>
 
-#include "core/check.h"
-
 namespace duo {
 namespace {
 
@@ -19,22 +17,24 @@ constexpr std::size_t kMostWaiting = 4;
 
 Pairing::Pairing(double frame_s) : limit_ns_(std::llround(kLimitFrames * frame_s * 1e9)) {}
 
-void Pairing::add(CameraSide side, Picture& picture) {
+bool Pairing::add(CameraSide side, Picture& picture, Pair& into) {
   auto& waiting = waiting_[static_cast<std::size_t>(side)];
   waiting.push_back(std::move(picture));
-  match();
+  const bool made = match(into);
   if (waiting.size() > kMostWaiting) {
     release(std::move(waiting.front()));
     waiting.pop_front();
     ++lonely_;
   }
   picture = {};
-  if (free_.empty()) return;
-  picture = std::move(free_.back());
-  free_.pop_back();
+  if (!free_.empty()) {
+    picture = std::move(free_.back());
+    free_.pop_back();
+  }
+  return made;
 }
 
-void Pairing::match() {
+bool Pairing::match(Pair& into) {
   auto& [lefts, rights] = waiting_;
   while (!lefts.empty() && !rights.empty()) {
     const TimeNs skew_ns = rights.front().t_ns - lefts.front().t_ns;
@@ -45,22 +45,16 @@ void Pairing::match() {
       ++lonely_;
       continue;
     }
-    if (ready_) ++dropped_;
-    std::swap(newest_.left, lefts.front());
-    std::swap(newest_.right, rights.front());
-    newest_.sequence = made_++;
-    ready_ = true;
+    std::swap(into.left, lefts.front());
+    std::swap(into.right, rights.front());
+    into.sequence = made_++;
     for (auto* waiting : {&lefts, &rights}) {
       release(std::move(waiting->front()));
       waiting->pop_front();
     }
+    return true;  // the picture that came is used: no other pair can be made
   }
-}
-
-void Pairing::take(Pair& into) {
-  DUO_CHECK(ready_);
-  std::swap(into, newest_);
-  ready_ = false;
+  return false;
 }
 
 }  // namespace duo

@@ -13,7 +13,7 @@ namespace duo {
 enum class CameraSide : std::uint8_t { kLeft, kRight };
 
 /// Takes the pictures of two cameras as they come and pairs each with the nearest of the other, when that lies within half a
-/// frame: a nearer one cannot follow. Each picture is used once. The newest pair wins: one that nobody took counts as dropped.
+/// frame: a nearer one cannot follow. Each picture is used once.
 ///
 /// Threads  one caller at a time
 class Pairing {
@@ -21,26 +21,21 @@ class Pairing {
   /// `frame_s`: of the faster camera.
   explicit Pairing(double frame_s);
 
-  /// Takes the picture's content and gives memory to fill again in exchange.
-  void add(CameraSide side, Picture& picture);
-  bool ready() const { return ready_; }
-  /// The newest pair; there must be one.
-  void take(Pair& into);
+  /// Takes the picture's content and gives memory to fill again in exchange. Whether it completes a pair, which is then in
+  /// `into`.
+  bool add(CameraSide side, Picture& picture, Pair& into);
 
-  std::int64_t dropped() const { return dropped_; }  // pairs
-  std::int64_t lonely() const { return lonely_; }    // pictures without a partner
+  std::int64_t lonely() const { return lonely_; }  // pictures without a partner
 
  private:
-  void match();
+  bool match(Pair& into);
   void release(Picture&& picture) { free_.push_back(std::move(picture)); }
 
   TimeNs limit_ns_;
   std::array<std::deque<Picture>, 2> waiting_;
   std::vector<Picture> free_;
-  Pair newest_;
-  bool ready_ = false;
-  std::uint64_t made_ = 0;
-  std::int64_t dropped_ = 0, lonely_ = 0;
+  std::uint64_t made_ = 0;  // pairs
+  std::int64_t lonely_ = 0;
 };
 
 }  // namespace duo

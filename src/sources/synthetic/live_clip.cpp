@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdio>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "duoptic/worker.h"
 #include "duoptic/synthetic.h"
 
 namespace duo {
@@ -33,12 +32,14 @@ class LiveClip final : public PairSource {
         size_(clip_.setup().size),
         rig_(clip_.rig()),
         all_(clip_.setup().frames),
-        pairs_(static_cast<std::size_t>(all_)),
-        renderer_([this] { render(); }) {}
-  ~LiveClip() override {
-    stop_ = true;
-    renderer_.join();
+        pairs_(static_cast<std::size_t>(all_)) {}
+
+  Result<void> start() {
+    DUO_TRY_ASSIGN(renderer_, Worker::start("render the synthetic person",
+                                            [this](const std::stop_token& stop) { return render(stop); }));
+    return {};
   }
+
   Size size() const override { return size_; }
   std::int64_t count() const override { return 0; }
   bool still() const override { return false; }
@@ -51,7 +52,8 @@ class LiveClip final : public PairSource {
   }
 
   Result<Next> next(Pair& into) override {
-    if (!wait_for_pairs()) return Next::kNothing;
+    if (!renderer_.ends_within(std::chrono::milliseconds(500))) return Next::kNothing;
+    DUO_TRY(renderer_.join());
     if (!start_) start_ = Clock::now();
     const std::int64_t due = std::max((Clock::now() - *start_) / kPeriod, last_ + 1);
     std::this_thread::sleep_until(*start_ + due * kPeriod);
@@ -62,17 +64,12 @@ class LiveClip final : public PairSource {
   }
 
  private:
-  void render() {
-    for (int i = 0; i < all_ && !stop_; ++i) {
+  Result<void> render(const std::stop_token& stop) {
+    for (int i = 0; i < all_ && !stop.stop_requested(); ++i) {
       pairs_[static_cast<std::size_t>(i)] = clip_.frame(i).pair;
-      const std::lock_guard lock(mutex_);
       rendered_ = i + 1;
     }
-    changed_.notify_all();
-  }
-  bool wait_for_pairs() {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, std::chrono::milliseconds(500), [this] { return rendered_ == all_; });
+    return {};
   }
   void show(std::int64_t number, Pair& into) const {
     const auto turn = static_cast<int>(number % (2 * all_ - 2));
@@ -92,15 +89,12 @@ class LiveClip final : public PairSource {
   const Size size_;
   const Rig rig_;
   const int all_;  // pairs
-  std::vector<Pair> pairs_;
+  std::vector<Pair> pairs_;  // the renderer's until it has ended
   std::atomic<int> rendered_ = 0;
-  std::atomic<bool> stop_ = false;
-  std::mutex mutex_;
-  std::condition_variable changed_;
   std::optional<Clock::time_point> start_;
   std::int64_t last_ = -1;  // pair that was given
   std::atomic<std::int64_t> dropped_ = 0;
-  std::thread renderer_;  // last: it uses all of the above
+  Worker renderer_;  // last: it uses all of the above
 };
 
 }  // namespace
@@ -129,7 +123,9 @@ Result<std::unique_ptr<PairSource>> open_live_clip(std::string_view name) {
   }
   const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   DUO_TRY_ASSIGN(SyntheticClip clip, SyntheticClip::open(setup, threads));
-  return std::unique_ptr<PairSource>(std::make_unique<LiveClip>(std::move(clip)));
+  auto live = std::make_unique<LiveClip>(std::move(clip));
+  DUO_TRY(live->start());
+  return std::unique_ptr<PairSource>(std::move(live));
 }
 
 }  // namespace duo

@@ -97,11 +97,11 @@ class Clip {
       if (!started && !std::all_of(truth.arms.begin(), truth.arms.begin() + static_cast<std::ptrdiff_t>(arms), all_visible))
         continue;
       engine_->submit(pair);
-      const Frame& frame = engine_->collect();
+      const std::shared_ptr<const Frame> frame = engine_->collect();
       if (std::exchange(started, true))
-        each(frame, truth);
+        each(*frame, truth);
       else
-        start(frame, truth);
+        start(*frame, truth);
       if (testing::Test::HasFatalFailure() || --most_frames == 0) return;
     }
     EXPECT_TRUE(started);

@@ -39,7 +39,7 @@ struct Line {
     EXPECT_TRUE(ready) << ready.error().what;
     must(tracker->prepare({*setup.rig, *engine->rectified()}));
   }
-  const Frame& frame(const Pair& pair) {
+  std::shared_ptr<const Frame> frame(const Pair& pair) {
     engine->submit(pair);
     return engine->collect();
   }
@@ -48,14 +48,14 @@ struct Line {
 /// Three places of the room that have colour and depth.
 Selection places(const SyntheticPair& scene) {
   Line line(make_simd_engine(1), setup_for(scene));
-  const Frame& frame = line.frame(scene.pair);
+  const std::shared_ptr<const Frame> frame = line.frame(scene.pair);
   Selection out{&kRightArm, {}};
   for (int y = 40; y < 144; y += 30)
     for (int x = 60; x < 192 && out.clicks.size() < kRightArm.joints.size(); x += 30) {
       Selection all{&kRightArm, {}};
       for (const JointDef& joint : kRightArm.joints)
         all.clicks.push_back({joint.id, static_cast<double>(x), static_cast<double>(y)});
-      if (line.tracker->select(frame, {&all, 1})) out.clicks.push_back(all.clicks[out.clicks.size()]);
+      if (line.tracker->select(*frame, {&all, 1})) out.clicks.push_back(all.clicks[out.clicks.size()]);
     }
   EXPECT_EQ(out.clicks.size(), kRightArm.joints.size());
   return out;
@@ -80,14 +80,14 @@ TEST(VulkanTracking, GivesTheCpusJoints) {
   const Selection clicks = places(scene);
   OwnDevice device;
   Line vulkan(device.engine(), setup_for(scene)), cpu(make_simd_engine(1), setup_for(scene));
-  const Frame& first = vulkan.frame(scene.pair);
-  ASSERT_NE(first.on_device, nullptr);
-  EXPECT_TRUE(first.left.empty() && first.color.empty() && first.disparity.d_q4.empty()) << "it stays on the device";
-  must(vulkan.tracker->select(first, {&clicks, 1}));
-  must(cpu.tracker->select(cpu.frame(scene.pair), {&clicks, 1}));
+  const std::shared_ptr<const Frame> first = vulkan.frame(scene.pair);
+  ASSERT_NE(first->on_device, nullptr);
+  EXPECT_TRUE(first->left.empty() && first->color.empty() && first->disparity.d_q4.empty()) << "it stays on the device";
+  must(vulkan.tracker->select(*first, {&clicks, 1}));
+  must(cpu.tracker->select(*cpu.frame(scene.pair), {&clicks, 1}));
   for (int i = 0; i < 3; ++i) {
-    const Person want = cpu.tracker->track(cpu.frame(scene.pair))[0];
-    expect_same_joints(want, vulkan.tracker->track(vulkan.frame(scene.pair))[0], "frame " + std::to_string(i));
+    const Person want = cpu.tracker->track(*cpu.frame(scene.pair))[0];
+    expect_same_joints(want, vulkan.tracker->track(*vulkan.frame(scene.pair))[0], "frame " + std::to_string(i));
     EXPECT_EQ(want.find(JointId::kRightHand)->state, JointState::kSeen) << "the scene itself";
   }
   EXPECT_EQ(vulkan.engine->take_event(), "");
@@ -101,17 +101,17 @@ TEST(VulkanTracking, LooksAtFramesThatStay) {
     for (int x = 0; x < dark.left.pixels.width(); ++x) dark.left.pixels.at(y, x) = {};
   OwnDevice device;
   Line vulkan(device.engine(), setup_for(scene));
-  const Frame& first = vulkan.frame(scene.pair);
+  const std::shared_ptr<const Frame> first = vulkan.frame(scene.pair);
   const Selection clicks = places(scene);
-  must(vulkan.tracker->select(first, {&clicks, 1}));
+  must(vulkan.tracker->select(*first, {&clicks, 1}));
   vulkan.engine->submit(scene.pair);
   vulkan.engine->submit(dark);
-  const Frame& second = vulkan.engine->collect();
+  const std::shared_ptr<const Frame> second = vulkan.engine->collect();
   vulkan.engine->submit(dark);
   (void)vulkan.engine->collect();
   vulkan.engine->submit(dark);
-  expect_state(vulkan.tracker->track(second)[0], JointState::kSeen);
-  expect_state(vulkan.tracker->track(vulkan.engine->collect())[0], JointState::kInferred);
+  expect_state(vulkan.tracker->track(*second)[0], JointState::kSeen);
+  expect_state(vulkan.tracker->track(*vulkan.engine->collect())[0], JointState::kInferred);
   vulkan.engine->collect();
 }
 
@@ -121,14 +121,14 @@ TEST(VulkanTracking, LeavesTheCpuFree) {
   OwnDevice device(vk::Validation::kOff);  // the layer allocates
   watch(device.calls());
   Line vulkan(device.engine(), setup_for(scene));
-  must(vulkan.tracker->select(vulkan.frame(scene.pair), {&clicks, 1}));
-  vulkan.tracker->track(vulkan.frame(scene.pair));  // the stored points go up
+  must(vulkan.tracker->select(*vulkan.frame(scene.pair), {&clicks, 1}));
+  vulkan.tracker->track(*vulkan.frame(scene.pair));  // the stored points go up
   std::int64_t least_ns = 1 << 30;
   for (int i = 0; i < 4; ++i) {
     const long allocations = test::allocations;
     const int submits = calls.submits;
     const std::int64_t begin_ns = thread_ns(), inside_ns = calls.inside_ns;
-    vulkan.tracker->track(vulkan.frame(scene.pair));
+    vulkan.tracker->track(*vulkan.frame(scene.pair));
     least_ns = std::min(least_ns, thread_ns() - begin_ns - (calls.inside_ns - inside_ns));
     EXPECT_LE(calls.submits - submits, 2);
     EXPECT_EQ(test::allocations - allocations, 0);
@@ -144,19 +144,19 @@ void expect_cpu_goes_on(void (*injure)(), const char* how) {
   OwnDevice device;
   watch(device.calls());
   Line vulkan(device.engine(), setup_for(scene)), cpu(make_simd_engine(1), setup_for(scene));
-  must(vulkan.tracker->select(vulkan.frame(scene.pair), {&clicks, 1}));
-  must(cpu.tracker->select(cpu.frame(scene.pair), {&clicks, 1}));
-  expect_same_joints(cpu.tracker->track(cpu.frame(scene.pair))[0], vulkan.tracker->track(vulkan.frame(scene.pair))[0], how);
-  const Frame& unseen = vulkan.frame(scene.pair);
+  must(vulkan.tracker->select(*vulkan.frame(scene.pair), {&clicks, 1}));
+  must(cpu.tracker->select(*cpu.frame(scene.pair), {&clicks, 1}));
+  expect_same_joints(cpu.tracker->track(*cpu.frame(scene.pair))[0], vulkan.tracker->track(*vulkan.frame(scene.pair))[0], how);
+  const std::shared_ptr<const Frame> unseen = vulkan.frame(scene.pair);
   injure();
-  expect_state(vulkan.tracker->track(unseen)[0], JointState::kInferred, how);
-  EXPECT_FALSE(vulkan.tracker->select(unseen, {&clicks, 1})) << how;
-  const Frame& on_cpu = vulkan.frame(scene.pair);
-  EXPECT_EQ(on_cpu.on_device, nullptr);
-  expect_same_joints(cpu.tracker->track(cpu.frame(scene.pair))[0], vulkan.tracker->track(on_cpu)[0], how);
+  expect_state(vulkan.tracker->track(*unseen)[0], JointState::kInferred, how);
+  EXPECT_FALSE(vulkan.tracker->select(*unseen, {&clicks, 1})) << how;
+  const std::shared_ptr<const Frame> on_cpu = vulkan.frame(scene.pair);
+  EXPECT_EQ(on_cpu->on_device, nullptr);
+  expect_same_joints(cpu.tracker->track(*cpu.frame(scene.pair))[0], vulkan.tracker->track(*on_cpu)[0], how);
   EXPECT_NE(vulkan.engine->take_event().find("the CPU goes on"), std::string::npos) << how;
   EXPECT_STREQ(vulkan.engine->name(), "simd");
-  must(vulkan.tracker->select(vulkan.frame(scene.pair), {&clicks, 1}));
+  must(vulkan.tracker->select(*vulkan.frame(scene.pair), {&clicks, 1}));
   EXPECT_EQ(vulkan.engine->take_event(), "") << "told once";
 }
 
@@ -173,15 +173,15 @@ TEST(VulkanTracking, LooksWhileTheNextFrameIsMade) {
   const Selection clicks = places(scene);
   OwnDevice device;
   Line vulkan(device.engine(), setup_for(scene)), cpu(make_simd_engine(1), setup_for(scene));
-  must(cpu.tracker->select(cpu.frame(scene.pair), {&clicks, 1}));
-  const Frame* frame = &vulkan.frame(scene.pair);
+  must(cpu.tracker->select(*cpu.frame(scene.pair), {&clicks, 1}));
+  std::shared_ptr<const Frame> frame = vulkan.frame(scene.pair);
   must(vulkan.tracker->select(*frame, {&clicks, 1}));
   for (int i = 0; i < kFrames; ++i) {
-    const Frame* next = nullptr;
-    std::jthread maker([&] { next = &vulkan.frame(scene.pair); });
+    std::shared_ptr<const Frame> next;
+    std::jthread maker([&] { next = vulkan.frame(scene.pair); });
     const Person got = vulkan.tracker->track(*frame)[0];
     maker.join();
-    expect_same_joints(cpu.tracker->track(cpu.frame(scene.pair))[0], got, "frame " + std::to_string(i));
+    expect_same_joints(cpu.tracker->track(*cpu.frame(scene.pair))[0], got, "frame " + std::to_string(i));
     frame = next;
   }
 }

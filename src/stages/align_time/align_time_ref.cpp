@@ -1,21 +1,23 @@
-#include "duoptic/in_step.h"
+#include "stages/align_time/align_time.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "sources/block_flow.h"
+#include "stages/align_time/block_flow.h"
 
-namespace duo {
+namespace duo::ref {
 namespace {
 
-void copy(const Image<Rgb8>& from, Image<Rgb8>& to) {
+constexpr TimeNs kLongestGap_ns = 150'000'000;  // between pictures: over more, paths are not straight
+
+void copy_rows(const Image<Rgb8>& from, Image<Rgb8>& to) {
   for (int y = 0; y < from.height(); ++y) std::copy_n(from.row(y), from.width(), to.row(y));
 }
 
 /// The picture between its pixels, 1/256 px; outside it its border goes on.
-Rgb8 sample(const Image<Rgb8>& picture, int x_q8, int y_q8) {
+Rgb8 sample_q8(const Image<Rgb8>& picture, int x_q8, int y_q8) {
   const auto at = [&](int x, int y) {
     return picture.at(std::clamp(y, 0, picture.height() - 1), std::clamp(x, 0, picture.width() - 1));
   };
@@ -29,7 +31,7 @@ Rgb8 sample(const Image<Rgb8>& picture, int x_q8, int y_q8) {
 
 }  // namespace
 
-struct InStep::State {
+struct AlignTime::State {
   BlockFlow flow;
   std::vector<Way> landed;  // of each cell: the way of what is there at the left picture's moment
   Image<Rgb8> last, moved;  // the right camera's picture before, and the one that is handed out
@@ -74,39 +76,54 @@ struct InStep::State {
         const int dx_q8 = way.x_q4 * share_q8 * step / 16, dy_q8 = way.y_q4 * share_q8 * step / 16;
         for (int v = y * step; v < (y + 1) * step; ++v)
           for (int u = x * step; u < (x + 1) * step; ++u)
-            moved.at(v, u) = way.moved() ? sample(now, u * 256 + dx_q8, v * 256 + dy_q8) : last.at(v, u);
+            moved.at(v, u) = way.moved() ? sample_q8(now, u * 256 + dx_q8, v * 256 + dy_q8) : last.at(v, u);
       }
   }
 };
 
-InStep::InStep() : state_(std::make_unique<State>()) {}
-InStep::~InStep() = default;
+AlignTime::AlignTime() : state_(std::make_unique<State>()) {}
+AlignTime::~AlignTime() = default;
 
-Image<Rgb8>* InStep::right_of(const Pair& pair) {
-  constexpr TimeNs kLongest_ns = 150'000'000;  // between pictures of the right camera: later, ways have bends
-  constexpr TimeNs kShortest_ns = 200'000;     // of a skew: in less an arm moves by a fraction of a millimetre
+/// Takes the right picture in; false when its skew is none to be put right.
+bool AlignTime::see(const Pair& pair) {
+  constexpr TimeNs kShortest_ns = 200'000;  // of a skew: in less an arm moves by a fraction of a millimetre
+  const TimeNs skew_ns = pair.right.t_ns - pair.left.t_ns;
+  if (std::abs(skew_ns) < kShortest_ns || std::abs(skew_ns) > kLongestGap_ns) {
+    state_->has_last = false;
+    return false;
+  }
+  state_->resize(pair.right.pixels.size());
+  state_->flow.see(pair.right.pixels);
+  return true;
+}
+
+/// For the next pair.
+void AlignTime::keep(const Pair& pair) {
+  copy_rows(pair.right.pixels, state_->last);
+  state_->last_ns = pair.right.t_ns;
+  state_->has_last = true;
+}
+
+void AlignTime::remember(const Pair& pair) {
+  if (see(pair)) keep(pair);
+}
+
+Image<Rgb8>* AlignTime::right_of(const Pair& pair) {
+  if (!see(pair)) return nullptr;
   State& s = *state_;
   const Image<Rgb8>& now = pair.right.pixels;
   const TimeNs skew_ns = pair.right.t_ns - pair.left.t_ns, since_ns = pair.right.t_ns - s.last_ns;
-  if (std::abs(skew_ns) < kShortest_ns || std::abs(skew_ns) > kLongest_ns) {
-    s.has_last = false;
-    return nullptr;
-  }
-  s.resize(now.size());
-  s.flow.see(now);
-  const bool known = s.has_last && since_ns > 0 && since_ns <= kLongest_ns;
+  const bool known = s.has_last && since_ns > 0 && since_ns <= kLongestGap_ns;
   if (known) {
     const double share = static_cast<double>(skew_ns) / static_cast<double>(since_ns);
     const auto share_q8 = static_cast<int>(std::lround(256 * std::clamp(share, -1.0, 1.0)));
     const std::vector<Way>& ways = s.flow.find();
     s.land(ways, share_q8);
-    copy(now, s.moved);
+    copy_rows(now, s.moved);
     s.paint(now, ways, share_q8);
   }
-  copy(now, s.last);
-  s.last_ns = pair.right.t_ns;
-  s.has_last = true;
+  keep(pair);
   return known ? &s.moved : nullptr;
 }
 
-}  // namespace duo
+}  // namespace duo::ref

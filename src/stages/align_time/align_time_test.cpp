@@ -1,5 +1,5 @@
 // What moves in the right picture lands where it was at the left picture's moment; the rest keeps its bits.
-#include "duoptic/in_step.h"
+#include "stages/align_time/align_time.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace duo {
 namespace {
 
 constexpr Size kPictureSize{320, 240};  // cells of one pixel
-constexpr int kSide = 48;        // of the square
+constexpr int kSide = 48;               // of the square
 constexpr TimeNs kFrame_ns = 33'000'000;
 constexpr int kSame = 24;  // levels: a place between pixels is a mean of them
 
@@ -61,11 +61,11 @@ int off_inside(const Image<Rgb8>& found, int left, int top) {
 }
 
 // 12 to the right and 6 up in a frame, and a third of a frame late: 4 and 2 too far.
-TEST(InStep, LandsWhereItWas) {
-  InStep common;
-  EXPECT_EQ(common.right_of(pair_of(scene(100, 100), 0, kFrame_ns / 3)), nullptr);  // no picture before
+TEST(AlignTime, LandsWhereItWas) {
+  ref::AlignTime align;
+  EXPECT_EQ(align.right_of(pair_of(scene(100, 100), 0, kFrame_ns / 3)), nullptr);  // no picture before
   const Pair late = pair_of(scene(112, 94), kFrame_ns, kFrame_ns / 3);
-  const Image<Rgb8>* found = common.right_of(late);
+  const Image<Rgb8>* found = align.right_of(late);
   ASSERT_NE(found, nullptr);
   EXPECT_GT(off_inside(late.right.pixels, 108, 96), 1000);  // of 1600
   EXPECT_LT(off_inside(*found, 108, 96), 40);
@@ -76,28 +76,41 @@ TEST(InStep, LandsWhereItWas) {
 }
 
 // A third of a frame early: it goes on by 4 and 2.
-TEST(InStep, AnEarlyPictureGoesOn) {
-  InStep common;
-  common.right_of(pair_of(scene(100, 100), 0, -kFrame_ns / 3));
+TEST(AlignTime, AnEarlyPictureGoesOn) {
+  ref::AlignTime align;
+  align.right_of(pair_of(scene(100, 100), 0, -kFrame_ns / 3));
   const Pair early = pair_of(scene(112, 94), kFrame_ns, -kFrame_ns / 3);
-  const Image<Rgb8>* found = common.right_of(early);
+  const Image<Rgb8>* found = align.right_of(early);
   ASSERT_NE(found, nullptr);
   EXPECT_GT(off_inside(early.right.pixels, 116, 92), 1000);
   EXPECT_LT(off_inside(*found, 116, 92), 40);
 }
 
-TEST(InStep, StillThingsKeepTheirBits) {
-  InStep common;
-  common.right_of(pair_of(scene(100, 100), 0, 9'000'000));
-  const Image<Rgb8>* found = common.right_of(pair_of(scene(100, 100), kFrame_ns, 9'000'000));
+// A pair that is only remembered is as good a picture before as one that was put right.
+TEST(AlignTime, RememberedPairsCount) {
+  const Pair before = pair_of(scene(100, 100), 0, kFrame_ns / 3), late = pair_of(scene(112, 94), kFrame_ns, kFrame_ns / 3);
+  ref::AlignTime align, remembers;
+  align.right_of(before);
+  remembers.remember(before);
+  const Image<Rgb8>*want = align.right_of(late), *got = remembers.right_of(late);
+  ASSERT_TRUE(want != nullptr && got != nullptr);
+  EXPECT_EQ(differing(*want, *got, 0), 0);
+  remembers.remember(pair_of(scene(112, 94), 2 * kFrame_ns, 0));  // in step: nothing is kept
+  EXPECT_EQ(remembers.right_of(pair_of(scene(112, 94), 3 * kFrame_ns, kFrame_ns / 3)), nullptr);
+}
+
+TEST(AlignTime, StillThingsKeepTheirBits) {
+  ref::AlignTime align;
+  align.right_of(pair_of(scene(100, 100), 0, 9'000'000));
+  const Image<Rgb8>* found = align.right_of(pair_of(scene(100, 100), kFrame_ns, 9'000'000));
   ASSERT_NE(found, nullptr);
   EXPECT_EQ(differing(*found, scene(100, 100), 0), 0);
 }
 
-TEST(InStep, NothingToDoOrNothingToDoItWith) {
-  InStep common;
+TEST(AlignTime, NothingToDoOrNothingToDoItWith) {
+  ref::AlignTime align;
   const auto moved = [&](TimeNs t_ns, TimeNs skew_ns, Size size = kPictureSize) {
-    return common.right_of(pair_of(Image<Rgb8>(size), t_ns, skew_ns)) != nullptr;
+    return align.right_of(pair_of(Image<Rgb8>(size), t_ns, skew_ns)) != nullptr;
   };
   EXPECT_FALSE(moved(0, 5'000'000));
   EXPECT_TRUE(moved(kFrame_ns, 5'000'000));
@@ -115,18 +128,18 @@ TEST(InStep, NothingToDoOrNothingToDoItWith) {
 
 // A waving person, 16 ms late: the right picture must come clearly nearer to the one taken in time. Still things are the same
 // in both, noise and all.
-TEST(InStep, ARenderedArmComesBack) {
+TEST(AlignTime, ARenderedArmComesBack) {
   SyntheticClipSetup setup{.size = {320, 240}, .seed = 1, .script = "wave"};
   auto in_time = SyntheticClip::open(setup, 2);
   setup.skew_s = 0.016;
   auto late = SyntheticClip::open(setup, 2);
   ASSERT_TRUE(in_time.has_value() && late.has_value());
-  InStep common;
+  ref::AlignTime align;
   int before = 0, after = 0;
   for (int i = 17; i < 22; ++i) {
     const Pair pair = late->frame(i).pair;
     EXPECT_EQ(pair.right.t_ns - pair.left.t_ns, 16'000'000);
-    const Image<Rgb8>* found = common.right_of(pair);
+    const Image<Rgb8>* found = align.right_of(pair);
     if (i == 17) continue;
     ASSERT_NE(found, nullptr);
     const Image<Rgb8> want = in_time->frame(i).pair.right.pixels;

@@ -1,4 +1,4 @@
-// Where the parts of a picture were in the same camera's picture before.
+// Block motion between two pictures of one camera.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 #include "duoptic/image.h"
 
-namespace duo {
+namespace duo::ref {
 
 /// A way from one picture to the next, in 1/16 cells to the right and down. {} = stands still, or not known.
 struct Way {
@@ -15,8 +15,8 @@ struct Way {
   bool moved() const { return x_q4 != 0 || y_q4 != 0; }
 };
 
-/// Ways by block matching on cells of step x step pixels, at most some 320 in a row: whole cells by search, a sixteenth by the
-/// costs beside the least. Each cell then takes, of the blocks around its own, the way that explains it best, which keeps
+/// Motion by block matching on cells of step x step pixels, at most some 320 in a row: whole cells by search, a sixteenth by
+/// the costs beside the least. Each cell then takes, of the blocks around its own, the way that explains it best, which keeps
 /// outlines sharp.
 ///
 /// Memory  allocated by the constructor
@@ -45,4 +45,4 @@ class BlockFlow {
   std::vector<Way> blocks_, cells_;
 };
 
-}  // namespace duo
+}  // namespace duo::ref

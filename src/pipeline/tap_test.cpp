@@ -1,6 +1,6 @@
 // What the record button and track --record do: every pair of a live source, and what becomes of it when the disk or its folder
 // says no.
-#include "recording.h"
+#include "pipeline/tap.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -11,7 +11,7 @@
 
 #include "tests/write_media.h"
 
-namespace duo::app {
+namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
@@ -61,26 +61,26 @@ class RecordingOnTheWay : public ::testing::Test {
     return report ? *report : RecordingReport{};
   }
   /// Until the source has given all, or the recording is over.
-  void play(Tap& tap) {
-    for (int i = 0; i < 1000 && recording_.status().pairs < kPairs && recording_.status().on; ++i)
+  void play(PairSource& tap) {
+    for (int i = 0; i < 1000 && recording_->status().pairs < kPairs && recording_->status().on; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     ASSERT_EQ(*tap.next(pair_), Next::kPicture);
   }
 
   const test::TempFolder folder_;
   const fs::path before_;
-  Recording recording_;
+  const std::shared_ptr<Recording> recording_ = std::make_shared<Recording>();
   Pair pair_;
 };
 
 TEST_F(RecordingOnTheWay, HasThePairsThatNobodyTookInTime) {
-  ASSERT_TRUE(recording_.start(dated_recording_name(), {}));
-  Tap tap(std::make_unique<Cameras>(), recording_);
-  play(tap);
+  ASSERT_TRUE(recording_->start("clip.mkv", {}, 0));
+  const auto tap = *tapped(std::make_unique<Cameras>(), recording_);
+  play(*tap);
   EXPECT_EQ(pair_.sequence, kPairs - 1U);  // the newest
-  EXPECT_EQ(tap.dropped(), kPairs - 1);
-  recording_.stop();
-  const RecordingStatus status = recording_.status();
+  EXPECT_EQ(tap->dropped(), kPairs - 1);
+  recording_->stop();
+  const RecordingStatus status = recording_->status();
   EXPECT_FALSE(status.on);
   EXPECT_EQ(status.problem, "");
   EXPECT_NEAR(status.length_s, (kPairs - 1) / 30.0, 1e-6);
@@ -89,12 +89,21 @@ TEST_F(RecordingOnTheWay, HasThePairsThatNobodyTookInTime) {
   EXPECT_EQ(report.left.missing, 0);
   EXPECT_FALSE(report.cut);
 
-  // One of the same second, and one without a pair.
-  ASSERT_TRUE(recording_.start(dated_recording_name(), {}));
-  EXPECT_NE(recording_.status().name, status.name);
-  recording_.stop();
-  EXPECT_FALSE(fs::exists(recording_.status().name));
+  // One without a pair.
+  ASSERT_TRUE(recording_->start("none.mkv", {}, 0));
+  recording_->stop();
+  EXPECT_FALSE(fs::exists("none.mkv"));
   EXPECT_TRUE(fs::exists(status.name));
+}
+
+TEST_F(RecordingOnTheWay, EndsByItselfAtItsLength) {
+  ASSERT_TRUE(recording_->start("clip.mkv", {}, 0.3));
+  const auto tap = *tapped(std::make_unique<Cameras>(), recording_);
+  play(*tap);
+  const RecordingStatus status = recording_->status();
+  EXPECT_FALSE(status.on);
+  EXPECT_EQ(status.pairs, 10);  // the pairs at 0 to 9 thirtieths of a second
+  EXPECT_EQ(report_of(status).pairs, 10);
 }
 
 TEST_F(RecordingOnTheWay, FullDiskKeepsWhatWasWritten) {
@@ -104,18 +113,18 @@ TEST_F(RecordingOnTheWay, FullDiskKeepsWhatWasWritten) {
   constexpr rlim_t kRoom = 150'000;  // stands for the full disk
   const rlimit small = {kRoom, before.rlim_max};
   setrlimit(RLIMIT_FSIZE, &small);
-  ASSERT_TRUE(recording_.start(dated_recording_name(), {}));
+  ASSERT_TRUE(recording_->start("clip.mkv", {}, 0));
   {
-    Tap tap(std::make_unique<Cameras>(), recording_);
-    play(tap);  // what is watched goes on
+    const auto tap = *tapped(std::make_unique<Cameras>(), recording_);
+    play(*tap);  // what is watched goes on
   }
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, old_handler);
-  const RecordingStatus status = recording_.status();
+  const RecordingStatus status = recording_->status();
   EXPECT_FALSE(status.on);
   EXPECT_NE(status.problem.find("is in it"), std::string::npos) << status.problem;
-  ASSERT_TRUE(recording_.failure());
-  EXPECT_EQ(recording_.failure()->code, ErrorCode::kWriteFailed);
+  ASSERT_TRUE(recording_->first_failure());
+  EXPECT_EQ(recording_->first_failure()->code, ErrorCode::kWriteFailed);
   const RecordingReport report = report_of(status);
   EXPECT_GT(report.pairs, 0);
   EXPECT_LT(report.pairs, kPairs);
@@ -128,11 +137,11 @@ TEST_F(RecordingOnTheWay, SaysThatItsFolderCannotBeWritten) {
   fs::create_directory(gone);
   fs::current_path(gone);
   fs::remove(gone);
-  EXPECT_FALSE(recording_.start(dated_recording_name(), {}));
-  EXPECT_FALSE(recording_.status().on);
-  EXPECT_NE(recording_.status().problem.find("cannot write 'duoptic_"), std::string::npos) << recording_.status().problem;
-  EXPECT_EQ(recording_.failure()->code, ErrorCode::kWriteFailed);
+  EXPECT_FALSE(recording_->start("clip.mkv", {}, 0));
+  EXPECT_FALSE(recording_->status().on);
+  EXPECT_NE(recording_->status().problem.find("cannot write 'clip"), std::string::npos) << recording_->status().problem;
+  EXPECT_EQ(recording_->first_failure()->code, ErrorCode::kWriteFailed);
 }
 
 }  // namespace
-}  // namespace duo::app
+}  // namespace duo

@@ -1,14 +1,14 @@
-#include "sources/block_flow.h"
+#include "stages/align_time/block_flow.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <utility>
 
-namespace duo {
+namespace duo::ref {
 namespace {
 
-constexpr int kBlock = 4, kWindow = 8;  // cells: side of a block, and of what is compared for it
+constexpr int kFlowBlock = 4, kFlowWindow = 8;  // cells: side of a block, and of what is compared for it
 
 }  // namespace
 
@@ -18,8 +18,8 @@ BlockFlow::BlockFlow(Size picture) {
   width_ = picture.width / step_;
   height_ = picture.height / step_;
   // Too small for a window: no blocks, nothing moves.
-  columns_ = width_ < kWindow || height_ < kWindow ? 0 : width_ / kBlock;
-  rows_ = height_ / kBlock;
+  columns_ = width_ < kFlowWindow || height_ < kFlowWindow ? 0 : width_ / kFlowBlock;
+  rows_ = height_ / kFlowBlock;
   now_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   before_.resize(now_.size());
   cells_.resize(now_.size());
@@ -44,24 +44,24 @@ void BlockFlow::see(const Image<Rgb8>& picture) {
 int BlockFlow::cost(int x, int y, int was_x, int was_y) const {
   const std::uint8_t *a = now_.data() + y * width_ + x, *b = before_.data() + was_y * width_ + was_x;
   int sum = 0;
-  for (int v = 0; v < kWindow; ++v, a += width_, b += width_)
-    for (int u = 0; u < kWindow; ++u) sum += std::abs(a[u] - b[u]);
+  for (int v = 0; v < kFlowWindow; ++v, a += width_, b += width_)
+    for (int u = 0; u < kFlowWindow; ++u) sum += std::abs(a[u] - b[u]);
   return sum;
 }
 
 Way BlockFlow::search(int block_x, int block_y) const {
-  constexpr int kReach = 14;                     // cells
-  constexpr int kStill = 4 * kWindow * kWindow;  // 4 levels: noise of a webcam, averaged over a cell
-  constexpr int kToll = 4;                       // a cell: without texture the shorter way wins
+  constexpr int kReach = 14;                             // cells
+  constexpr int kStill = 4 * kFlowWindow * kFlowWindow;  // 4 levels: noise of a webcam, averaged over a cell
+  constexpr int kToll = 4;                               // a cell: without texture the shorter way wins
   constexpr int kEnoughNum = 4, kEnoughDen = 5;  // of the cost of standing still; else it is something else that came to light
-  constexpr int kMargin = (kWindow - kBlock) / 2;
-  const int x0 = std::clamp(block_x * kBlock - kMargin, 0, width_ - kWindow),
-            y0 = std::clamp(block_y * kBlock - kMargin, 0, height_ - kWindow);
+  constexpr int kMargin = (kFlowWindow - kFlowBlock) / 2;
+  const int x0 = std::clamp(block_x * kFlowBlock - kMargin, 0, width_ - kFlowWindow),
+            y0 = std::clamp(block_y * kFlowBlock - kMargin, 0, height_ - kFlowWindow);
   const int still = cost(x0, y0, x0, y0);
   if (still < kStill) return {};
   int best = still, best_x = x0, best_y = y0;
-  for (int y = std::max(0, y0 - kReach); y <= std::min(height_ - kWindow, y0 + kReach); ++y)
-    for (int x = std::max(0, x0 - kReach); x <= std::min(width_ - kWindow, x0 + kReach); ++x) {
+  for (int y = std::max(0, y0 - kReach); y <= std::min(height_ - kFlowWindow, y0 + kReach); ++y)
+    for (int x = std::max(0, x0 - kReach); x <= std::min(width_ - kFlowWindow, x0 + kReach); ++x) {
       const int c = cost(x0, y0, x, y) + kToll * (std::abs(x - x0) + std::abs(y - y0));
       if (c < best) best = c, best_x = x, best_y = y;
     }
@@ -69,7 +69,8 @@ Way BlockFlow::search(int block_x, int block_y) const {
   // Two lines of equal slope through the costs on either side: of absolute differences, the better fit than a parabola.
   const auto part_q4 = [&](int ox, int oy) {
     const auto at = [&](int k) {
-      return cost(x0, y0, std::clamp(best_x + k * ox, 0, width_ - kWindow), std::clamp(best_y + k * oy, 0, height_ - kWindow));
+      return cost(x0, y0, std::clamp(best_x + k * ox, 0, width_ - kFlowWindow),
+                  std::clamp(best_y + k * oy, 0, height_ - kFlowWindow));
     };
     const int a = at(-1), middle = at(0), b = at(1), top = std::max(a, b) - middle;
     return top > 0 ? std::clamp(8 * (a - b) / top, -8, 8) : 0;
@@ -98,8 +99,8 @@ void BlockFlow::choose(int block_x, int block_y) {
       const auto end = ways.begin() + static_cast<std::ptrdiff_t>(count);
       if (std::find(ways.begin(), end, way) == end) ways[count++] = way;
     }
-  for (int y = block_y * kBlock; y < (block_y + 1) * kBlock; ++y)
-    for (int x = block_x * kBlock; x < (block_x + 1) * kBlock; ++x) {
+  for (int y = block_y * kFlowBlock; y < (block_y + 1) * kFlowBlock; ++y)
+    for (int x = block_x * kFlowBlock; x < (block_x + 1) * kFlowBlock; ++x) {
       Way& best = cells_[static_cast<std::size_t>(y * width_ + x)];
       best = ways[0];
       if (count == 1) continue;
@@ -117,4 +118,4 @@ const std::vector<Way>& BlockFlow::find() {
   return cells_;
 }
 
-}  // namespace duo
+}  // namespace duo::ref

@@ -1,0 +1,25 @@
+// The options of what tracks: `track`, `eval clip` and `view`.
+#pragma once
+
+#include <string>
+
+#include "command.h"
+#include "duoptic/pipeline.h"
+#include "input.h"
+
+namespace duo::app {
+
+struct TrackingOptions {
+  static constexpr double kNearest_m = 0.5;
+
+  EngineOptions engine;
+  std::string tracker = "arm";
+  int max_disparity = 0;  // 0: what something at kNearest_m has
+  bool all_maps = false;  // frames are drawn or scored, not only tracked
+  bool in_bulk = false;   // of files: as many frames per second as can be, rather than each soon
+
+  void add_to(CLI::App& app);
+  PipelineSetup setup(const Input& input) const;
+};
+
+}  // namespace duo::app

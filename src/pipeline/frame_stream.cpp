@@ -1,0 +1,190 @@
+#include "pipeline/frame_stream.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "core/clock.h"
+
+namespace duo {
+
+FrameStream::FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int at_once, Choice choice)
+    : source_(std::move(source)),
+      engine_(engine),
+      choice_(choice),
+      pool_(0, [] { return Pair(); }),
+      ring_(static_cast<std::size_t>(source_->live() ? 1 : std::max(1, at_once))) {}
+
+FrameStream::~FrameStream() {
+  matcher_.ask_to_stop();
+  frames_.close();
+  pairs_.close();
+  matcher_ = {};
+  reader_ = {};
+  const std::lock_guard lock(engine_mutex_);
+  empty_engine();  // it works on pairs of ours
+}
+
+Result<void> FrameStream::start() {
+  if (!source_->live()) {
+    DUO_TRY_ASSIGN(reader_, Worker::start(
+                                "read the next pair", [this](const std::stop_token&) { return read_all(); },
+                                [this](const Result<void>& result) { pairs_.close(result); }));
+  }
+  DUO_TRY_ASSIGN(matcher_, Worker::start(
+                               "make the next frame", [this](const std::stop_token& stop) { return match_all(stop); },
+                               [this](const Result<void>& result) { frames_.close(result); }));
+  return {};
+}
+
+/// One pair ahead of who takes them.
+Result<void> FrameStream::read_all() {
+  while (pairs_.wait_for_room()) {
+    std::shared_ptr<Pair> pair = pool_.lend();
+    DUO_TRY_ASSIGN(const Next next, source_->next(*pair));
+    if (next != Next::kPicture) {
+      end_ = next;
+      break;
+    }
+    pairs_.put(pair);
+  }
+  return {};
+}
+
+Result<Next> FrameStream::take_pair(std::shared_ptr<Pair>& into) {
+  into.reset();
+  if (source_->live()) {
+    into = pool_.lend();
+    return source_->next(*into);
+  }
+  DUO_TRY_ASSIGN(const Taken taken, pairs_.take(into));
+  return taken == Taken::kValue ? Next::kPicture : end_.load();
+}
+
+Result<Next> FrameStream::choose_pair(std::shared_ptr<Pair>& into) {
+  while (true) {
+    DUO_TRY_ASSIGN(const Next next, take_pair(into));
+    if (next != Next::kPicture) return next;
+    if (read_ == 0) start_ns_ = into->left.t_ns;
+    const std::int64_t from_first = read_++ - choice_.first;
+    if (from_first >= 0 && from_first % choice_.every == 0) return Next::kPicture;
+    if (from_first + 1 >= 0 && (from_first + 1) % choice_.every == 0) align_.remember(*into);
+    if (source_->live()) return Next::kNothing;  // it may be long: who waits may want to stop
+  }
+}
+
+Result<void> FrameStream::match_all(const std::stop_token& stop) {
+  std::optional<Result<Next>> end;
+  Matched item;
+  while (!stop.stop_requested() && frames_.wait_for_room()) {
+    while (!end && in_engine_ < ring_.size()) {
+      Result<Next> next = choose_pair(item.pair);
+      if (next && *next == Next::kNothing) break;
+      if (!next || *next != Next::kPicture) {
+        end = std::move(next);
+        break;
+      }
+      item.started_ns = wall_ns();
+      align(item);
+      const std::lock_guard lock(engine_mutex_);
+      std::swap(in_flight(in_engine_++), item);
+      submit(in_flight(in_engine_ - 1));
+    }
+    if (in_engine_ == 0) {
+      if (!end) continue;  // live, and nothing came
+      if (!*end) return end->error();
+      end_ = **end;
+      return {};
+    }
+    {
+      const std::lock_guard lock(engine_mutex_);
+      collect(in_flight(0));
+      std::swap(item, in_flight(0));
+      oldest_ = (oldest_ + 1) % ring_.size();
+      --in_engine_;
+    }
+    frames_.put(item);
+  }
+  return {};
+}
+
+void FrameStream::align(Matched& item) {
+  item.aligned = false;
+  if (engine_ == nullptr) return;
+  Image<Rgb8>* moved = align_.right_of(*item.pair);
+  if (moved == nullptr) return;
+  item.aligned = true;
+  if (item.other_right.size() != moved->size()) item.other_right = Image<Rgb8>(moved->size());
+  std::swap(item.other_right, *moved);
+}
+
+void FrameStream::submit(Matched& item) {
+  item.setup = setup_;
+  if (engine_ == nullptr) return;
+  if (item.aligned) std::swap(item.pair->right.pixels, item.other_right);
+  engine_->submit(*item.pair);
+}
+
+void FrameStream::collect(Matched& item) {
+  if (engine_ == nullptr) return;
+  item.frame = engine_->collect();
+  item.engine_ms = static_cast<double>(wall_ns() - item.started_ns) * 1e-6;
+  item.event = engine_->take_event();
+  if (item.aligned) std::swap(item.pair->right.pixels, item.other_right);
+}
+
+/// Takes back what the engine works on.
+void FrameStream::empty_engine() {
+  for (std::size_t i = 0; i < in_engine_; ++i) collect(in_flight(i));
+}
+
+void FrameStream::refill_engine() {
+  for (std::size_t i = 0; i < in_engine_; ++i) submit(in_flight(i));
+}
+
+/// While the engine is empty. In time as it was: the cameras have moved on since.
+void FrameStream::make_anew(Matched& item) {
+  item.started_ns = wall_ns();
+  const std::shared_ptr<Pair> shared = item.pair;  // stays as it came, for who has it
+  if (item.aligned) {
+    item.pair = pool_.lend();
+    item.pair->sequence = shared->sequence;
+    item.pair->left.pixels = shared->left.pixels.clone();
+    item.pair->left.t_ns = shared->left.t_ns;
+    item.pair->right.t_ns = shared->right.t_ns;
+  }
+  submit(item);
+  collect(item);
+  item.pair = shared;
+}
+
+Result<Next> FrameStream::next(Matched& into) {
+  constexpr auto kPatience = std::chrono::milliseconds(500);
+  const std::optional<std::chrono::nanoseconds> patience =
+      source_->live() ? std::optional<std::chrono::nanoseconds>(kPatience) : std::nullopt;
+  DUO_TRY_ASSIGN(const Taken taken, frames_.take(taken_, patience));
+  if (taken != Taken::kValue) return taken == Taken::kNothing ? Next::kNothing : end_.load();
+  std::swap(into, taken_);
+  taken_.frame.reset();  // back into their pools
+  taken_.pair.reset();
+  const std::lock_guard lock(engine_mutex_);
+  if (into.setup == setup_) return Next::kPicture;
+  empty_engine();
+  make_anew(into);
+  refill_engine();
+  return Next::kPicture;
+}
+
+Result<void> FrameStream::prepare(const Setup& setup, Matched& last) {
+  const std::lock_guard lock(engine_mutex_);
+  empty_engine();
+  Result<void> prepared = engine_->prepare(setup);
+  if (prepared) {
+    ++setup_;
+    if (last.pair != nullptr) make_anew(last);
+  }
+  refill_engine();
+  return prepared;
+}
+
+}  // namespace duo

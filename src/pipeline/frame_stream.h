@@ -1,0 +1,99 @@
+// Pairs of a source as frames of an engine, made ahead of who takes them.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/object_pool.h"
+#include "duoptic/bounded_queue.h"
+#include "duoptic/engine.h"
+#include "duoptic/source.h"
+#include "duoptic/worker.h"
+#include "stages/align_time/align_time.h"
+
+namespace duo {
+
+/// A pair and what an engine made of it.
+struct Matched {
+  std::shared_ptr<Pair> pair;  // as it came
+  std::shared_ptr<const Frame> frame;
+  double engine_ms = 0;     // from when the engine was given the pair to its frame
+  std::string event;        // Engine::take_event()
+  bool aligned = false;     // the engine got another right picture, that of the left one's capture time:
+  Image<Rgb8> other_right;  // it lies here, and while the engine works on the pair it is the one that came that lies here
+  std::int64_t started_ns = 0;
+  int setup = 0;  // which of the stream's setups the frame was made with
+};
+
+/// Source → align in time → engine, in threads. Of files each pair is read and matched in order; a live source gives its newest
+/// pair when the engine is free. One frame waits for who takes it; meanwhile matching rests.
+class FrameStream {
+ public:
+  /// Pairs before number `first` are passed over, and of those from there on all but every `every`-th.
+  struct Choice {
+    std::int64_t first = 0, every = 1;
+  };
+  /// The engine, which must be prepared and outlive this, gets `at_once` pairs at once, of a live source one. Null: the pairs
+  /// come without frames.
+  FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int at_once, Choice choice);
+  ~FrameStream();
+  FrameStream(const FrameStream&) = delete;
+  FrameStream& operator=(const FrameStream&) = delete;
+
+  /// Starts the threads.
+  ///
+  /// Errors  the system gives none
+  Result<void> start();
+
+  /// As PairSource::next(); only a picture changes `into`. Not to be called again after the end or an error.
+  Result<Next> next(Matched& into);
+  /// Until the next frame, or the end, is ready; of one pair at once matching rests then.
+  void wait() { frames_.wait(); }
+  /// Another setup for the engine. `last` and the frames that follow are made with it.
+  ///
+  /// Errors  those of Engine::prepare(); then all is as it was
+  Result<void> prepare(const Setup& setup, Matched& last);
+
+  const PairSource& source() const { return *source_; }
+  TimeNs start_ns() const { return start_ns_; }  // of the source's first pair, once next() gave one
+  std::int64_t read() const { return read_; }    // pairs of the source, before its end
+
+ private:
+  Result<void> read_all();
+  Result<void> match_all(const std::stop_token& stop);
+  Result<Next> take_pair(std::shared_ptr<Pair>& into);
+  Result<Next> choose_pair(std::shared_ptr<Pair>& into);
+  void align(Matched& item);
+  void submit(Matched& item);
+  void collect(Matched& item);
+  void make_anew(Matched& item);
+  void empty_engine();
+  void refill_engine();
+  Matched& in_flight(std::size_t i) { return ring_[(oldest_ + i) % ring_.size()]; }
+
+  std::unique_ptr<PairSource> source_;
+  Engine* const engine_;
+  const Choice choice_;
+  ObjectPool<Pair> pool_;
+  ref::AlignTime align_;
+  std::atomic<std::int64_t> read_ = 0;
+  std::atomic<TimeNs> start_ns_ = 0;
+  std::atomic<Next> end_ = Next::kEnd;  // what the source's was
+
+  std::mutex engine_mutex_;  // of what follows
+  std::vector<Matched> ring_;
+  std::size_t oldest_ = 0, in_engine_ = 0;  // in_engine_ of ring_ from oldest_
+  int setup_ = 0;
+
+  BoundedQueue<std::shared_ptr<Pair>> pairs_{1, WhenFull::kWait};  // of files
+  BoundedQueue<Matched> frames_{1, WhenFull::kWait};
+  Matched taken_;            // on its way out of the queue
+  Worker reader_, matcher_;  // last: they use all of the above
+};
+
+}  // namespace duo

@@ -1,0 +1,277 @@
+#include "duoptic/pipeline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "core/check.h"
+#include "core/clock.h"
+#include "pipeline/frame_stream.h"
+#include "pipeline/tap.h"
+
+namespace duo {
+
+struct Pipeline::State {
+  struct NamedSink {
+    std::string name;
+    std::unique_ptr<Sink> sink;
+  };
+
+  PipelineSetup setup;
+  TrackHeader header;
+  std::unique_ptr<Engine> engine;
+  std::unique_ptr<Tracker> tracker;
+  std::shared_ptr<Recording> recording = std::make_shared<Recording>();
+  std::vector<NamedSink> sinks;
+
+  std::unique_ptr<PairSource> waiting;  // until the first next()
+  std::unique_ptr<FrameStream> frames;  // after the engine, which it uses to its end
+  Matched last;
+  std::shared_ptr<const Pair> pair;  // last.pair
+  std::vector<Person> people;
+  double tracker_ms = 0;
+  std::int64_t passed = 0;  // frames of sources before this one
+  double passed_s = 0;
+
+  const PairSource& source() const { return frames ? frames->source() : *waiting; }
+
+  Result<void> prepare();
+  Result<void> prepare_tracker();
+  Result<void> start();
+  void keep(std::span<const Person> found) { people.assign(found.begin(), found.end()); }
+};
+
+namespace {
+
+void add_wants(const Wants& from, Wants& to) {
+  to.color |= from.color;
+  to.depth |= from.depth;
+  to.confidence |= from.confidence;
+  to.views |= from.views;
+  to.disparity |= from.disparity;
+  to.on_device |= from.on_device;
+}
+
+}  // namespace
+
+Result<void> Pipeline::State::prepare() {
+  Setup& of_engine = setup.frames;
+  const bool live = waiting->live();
+  of_engine.size = waiting->size();
+  if (!of_engine.rig && !of_engine.rows) of_engine.rig = waiting->rig();
+  of_engine.many_at_once &= !live;
+  header.sources = setup.names;
+  header.size = of_engine.size;
+  header.frame_s = waiting->frame_s();
+  header.live = live;
+  if (setup.engine.empty()) return {};
+
+  if (!setup.tracker.empty()) {
+    if (!of_engine.rig)
+      return Error{ErrorCode::kBadInput,
+                   fmt::format("cannot find joints in space with {}: it does not bring a rig; give one with --rig",
+                               setup.names.empty() ? "the source" : setup.names[0])};
+    DUO_TRY_ASSIGN(tracker, make_tracker(setup.tracker));
+    add_wants(tracker->wants(), of_engine.wants);
+    header.tracker = tracker->name();
+    header.skeletons.assign(tracker->skeletons().begin(), tracker->skeletons().end());
+  }
+  if (setup.threads <= 0) setup.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  DUO_TRY_ASSIGN(engine, make_engine(setup.engine, setup.threads));
+  DUO_TRY(engine->prepare(of_engine));
+  header.engine = engine->name();
+  header.device = engine->device();
+  header.matcher = of_engine.matcher;
+  header.matcher_preset = of_engine.preset;
+  if (engine->rectified()) header.rectified = *engine->rectified();
+  return prepare_tracker();
+}
+
+Result<void> Pipeline::State::prepare_tracker() {
+  if (tracker == nullptr) return {};
+  return tracker->prepare({*setup.frames.rig, header.rectified, header.frame_s, setup.threads, header.live});
+}
+
+/// The threads, at the first pair that is asked for.
+Result<void> Pipeline::State::start() {
+  if (frames) return {};
+  DUO_CHECK(waiting != nullptr);
+  const int at_once = setup.frames.many_at_once && engine ? engine->in_flight() : 1;
+  DUO_TRY_ASSIGN(auto pairs, tapped(std::move(waiting), recording));
+  frames = std::make_unique<FrameStream>(std::move(pairs), engine.get(), at_once,
+                                         FrameStream::Choice{setup.first, std::max<std::int64_t>(1, setup.every)});
+  return frames->start();
+}
+
+Pipeline::Pipeline(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Pipeline::Pipeline(Pipeline&&) noexcept = default;
+Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
+Pipeline::~Pipeline() = default;
+
+Result<Pipeline> Pipeline::open(std::unique_ptr<PairSource> pairs, PipelineSetup setup) {
+  auto state = std::make_unique<State>();
+  state->setup = std::move(setup);
+  state->waiting = std::move(pairs);
+  DUO_TRY(state->prepare());
+  return Pipeline(std::move(state));
+}
+
+Result<Next> Pipeline::next() {
+  State& s = *state_;
+  DUO_TRY(s.start());
+  DUO_TRY_ASSIGN(const Next next, s.frames->next(s.last));
+  if (next != Next::kPicture) return next;
+  s.pair = s.last.pair;
+  if (s.tracker == nullptr) return next;
+  const std::int64_t begin_ns = wall_ns();
+  s.keep(s.tracker->track(*s.last.frame));
+  s.tracker_ms = static_cast<double>(wall_ns() - begin_ns) * 1e-6;
+  return next;
+}
+
+void Pipeline::wait() { state_->frames->wait(); }
+
+const std::shared_ptr<const Frame>& Pipeline::frame() const { return state_->last.frame; }
+const std::shared_ptr<const Pair>& Pipeline::pair() const { return state_->pair; }
+std::span<const Person> Pipeline::people() const { return state_->people; }
+const Tracker* Pipeline::tracker() const { return state_->tracker.get(); }
+TrackTimes Pipeline::times() const { return {state_->last.engine_ms, state_->tracker_ms}; }
+std::string Pipeline::event() const { return state_->last.event; }
+
+TrackedFrame Pipeline::tracked() const {
+  const Pair& pair = *state_->pair;
+  return {static_cast<std::int64_t>(pair.sequence),
+          static_cast<double>(pair.left.t_ns - state_->frames->start_ns()) * 1e-9,
+          {state_->pair, &pair.left},
+          state_->last.frame,
+          state_->people,
+          state_->setup.tell_times ? std::optional(times()) : std::nullopt};
+}
+
+Result<void> Pipeline::select(std::span<const Selection> selections) {
+  State& s = *state_;
+  DUO_CHECK(s.tracker != nullptr && s.last.frame != nullptr);
+  const std::int64_t begin_ns = wall_ns();
+  DUO_TRY_ASSIGN(const std::span<const Person> found, s.tracker->select(*s.last.frame, selections));
+  s.keep(found);
+  s.tracker_ms = static_cast<double>(wall_ns() - begin_ns) * 1e-6;
+  return {};
+}
+
+void Pipeline::forget() {
+  if (state_->tracker) state_->tracker->reset();
+  state_->people.clear();
+}
+
+Result<void> Pipeline::set(const std::vector<std::pair<std::string, double>>& parameters) {
+  State& s = *state_;
+  Setup setup = s.setup.frames;
+  setup.parameters = parameters;
+  if (s.frames)
+    DUO_TRY(s.frames->prepare(setup, s.last));
+  else
+    DUO_TRY(s.engine->prepare(setup));
+  s.setup.frames = std::move(setup);
+  return {};
+}
+
+void Pipeline::look_at(std::span<const Window> windows) {
+  DUO_CHECK(state_->frames == nullptr);
+  state_->engine->look_at(windows);
+}
+
+Result<void> Pipeline::add_sink(std::string name, std::unique_ptr<Sink> sink) {
+  if (live() && !sink->instant()) {
+    DUO_TRY_ASSIGN(sink, in_background(std::move(sink)));
+  }
+  state_->sinks.push_back({std::move(name), std::move(sink)});
+  return {};
+}
+
+bool Pipeline::has_sink(std::string_view name) const {
+  return std::any_of(state_->sinks.begin(), state_->sinks.end(), [&](const auto& sink) { return sink.name == name; });
+}
+
+Result<void> Pipeline::write() {
+  State& s = *state_;
+  TrackedFrame frame = tracked();
+  frame.number += s.passed;
+  frame.t_s += s.passed_s;
+  Result<void> first;
+  std::erase_if(s.sinks, [&](const State::NamedSink& sink) {
+    const Result<void> written = sink.sink->write(frame);
+    if (!written && first) first = written;
+    return !written;
+  });
+  return first;
+}
+
+Result<void> Pipeline::finish_sink(std::string_view name) {
+  Result<void> first;
+  std::erase_if(state_->sinks, [&](const State::NamedSink& sink) {
+    if (sink.name != name) return false;
+    if (const Result<void> finished = sink.sink->finish(); !finished && first) first = finished;
+    return true;
+  });
+  return first;
+}
+
+Result<void> Pipeline::finish_sinks() {
+  Result<void> first;
+  for (const State::NamedSink& sink : state_->sinks)
+    if (const Result<void> finished = sink.sink->finish(); !finished && first) first = finished;
+  return first;
+}
+
+std::vector<std::pair<std::string, std::int64_t>> Pipeline::dropped_by_sinks() const {
+  std::vector<std::pair<std::string, std::int64_t>> out;
+  for (const auto& [name, sink] : state_->sinks)
+    if (sink->dropped() > 0) out.emplace_back(name, sink->dropped());
+  return out;
+}
+
+Result<void> Pipeline::record(const std::filesystem::path& path, const RecorderSetup& setup, double most_s) {
+  DUO_TRY(state_->recording->start(path, setup, most_s));
+  return state_->start();  // a live source is recorded before anybody asks for a frame
+}
+
+void Pipeline::stop_recording() { state_->recording->stop(); }
+RecordingStatus Pipeline::recording() const { return state_->recording->status(); }
+std::optional<Error> Pipeline::recording_failure() const { return state_->recording->first_failure(); }
+
+void Pipeline::close_source() {
+  State& s = *state_;
+  if (s.pair) {
+    s.passed += static_cast<std::int64_t>(s.pair->sequence) + 1;
+    s.passed_s += static_cast<double>(s.pair->sequence + 1) * s.header.frame_s;
+  }
+  s.frames.reset();
+  s.waiting.reset();
+  s.pair.reset();
+  s.last = {};
+  s.people.clear();
+}
+
+Result<void> Pipeline::restart(std::unique_ptr<PairSource> pairs) {
+  State& s = *state_;
+  close_source();
+  if (pairs->size() != s.header.size)
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("cannot start again: the pictures were {}x{} and are {}x{} now", s.header.size.width,
+                             s.header.size.height, pairs->size().width, pairs->size().height)};
+  s.waiting = std::move(pairs);
+  return s.prepare_tracker();
+}
+
+const TrackHeader& Pipeline::header() const { return state_->header; }
+const Setup& Pipeline::setup() const { return state_->setup.frames; }
+const std::optional<Rectified>& Pipeline::rectified() const { return state_->engine->rectified(); }
+bool Pipeline::live() const { return state_->header.live; }
+bool Pipeline::still() const { return state_->source().still(); }
+std::int64_t Pipeline::count() const { return state_->source().count(); }
+std::int64_t Pipeline::read() const { return state_->frames ? state_->frames->read() : 0; }
+std::int64_t Pipeline::dropped() const { return state_->source().dropped(); }
+std::string Pipeline::warning() const { return state_->source().warning(); }
+
+}  // namespace duo
