@@ -52,7 +52,7 @@ void expect_engines_agree(Size size, int max_disparity, const char* preset, bool
   const MatchSetup setup{size, max_disparity, masked};
   StageTimer timer;
   Image<std::uint16_t> want(size);
-  ref::Pyramid(params, setup).match(pair, want, timer);
+  ref::Pyramid(params, setup).match(pair, {want}, timer);
   test::each_target([&](const std::string& target) {
     for (const int threads : {1, 2, 3}) {
       Pool pool(threads);
@@ -89,7 +89,7 @@ TEST(Pyramid, FindsTheBox) {
   const Scene scene(size, 22);
   Image<std::uint16_t> got(size);
   StageTimer timer;
-  ref::Pyramid(*pyramid_params("default", {}), {size, 32, false}).match({scene.left, scene.right}, got, timer);
+  ref::Pyramid(*pyramid_params("default", {}), {size, 32, false}).match({scene.left, scene.right}, {got}, timer);
   EXPECT_NEAR(got.at(35, 80), 12 * 16, 4);
   EXPECT_NEAR(got.at(35, 30), 4 * 16, 4);
 }

@@ -46,7 +46,7 @@ void expect_agrees(vk::Device& device, const char* preset, const MatchSetup& set
     vk::Pyramid::Input input{left.view(), right.view()};
     if (setup.masked) input.left_inside = left_inside.view(), input.right_inside = right_inside.view();
     test::run_with(
-        recorder, [&] { matcher.record(recorder, input, d_q4.view()); }, left, right, left_inside, right_inside, d_q4);
+        recorder, [&] { matcher.record(recorder, input, {d_q4.view()}); }, left, right, left_inside, right_inside, d_q4);
     const std::string what = std::string("pyramid ") + preset + (setup.masked ? " masked" : "") + where;
     if (!test::expect_same<std::uint16_t>(want, d_q4.pixels(what), what)) return;
   }
