@@ -130,11 +130,12 @@ class SimdEngine final : public Engine {
   Result<void> make_frames() {
     const int at_once = frames_at_once(prepared_.setup, threads_);
     try {
-      if (at_once == 1) alone_ = std::make_unique<SimdFrames>(prepared_, threads_);
       for (int i = 0; at_once > 1 && i < at_once; ++i) {
-        DUO_TRY_ASSIGN(auto thread, FrameThread::start(prepared_, threads_ / at_once + (i < threads_ % at_once)));
-        threads_of_frames_.push_back(std::move(thread));
+        auto thread = FrameThread::start(prepared_, threads_ / at_once + (i < threads_ % at_once));
+        if (!thread) break;  // the system allows no more: those there are do all
+        threads_of_frames_.push_back(std::move(*thread));
       }
+      if (threads_of_frames_.empty()) alone_ = std::make_unique<SimdFrames>(prepared_, threads_);
       frames_ = ObjectPool<Frame>(static_cast<std::size_t>(at_once + kSpareFrames), [this] { return make_frame(prepared_); });
     } catch (const std::bad_alloc&) {
       const Setup& setup = prepared_.setup;

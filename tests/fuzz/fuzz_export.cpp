@@ -10,16 +10,10 @@
 #include <string>
 
 #include "core/check.h"
+#include "core/libav.h"
 #include "duoptic/recording.h"
 #include "duoptic/source.h"
 #include "sources/video.h"
-
-namespace duo {
-
-/// The library's looks for cameras and streams first.
-Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path, const CameraWish&) { return open_video(path); }
-
-}  // namespace duo
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace fs = std::filesystem;

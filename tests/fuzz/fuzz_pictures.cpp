@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/check.h"
+#include "core/libav.h"
 #include "sources/pictures.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

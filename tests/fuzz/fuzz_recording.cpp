@@ -14,9 +14,6 @@
 
 namespace duo {
 
-/// The library's looks for cameras and streams first.
-Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path, const CameraWish&) { return open_video(path); }
-
 namespace {
 
 /// To its end, or as far as time allows; each picture is a whole one.
