@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto again = duo::parse_board(board->name(), 0.025);
     DUO_CHECK(again && again->columns == board->columns && again->rows == board->rows);
   }
-  if (const auto paper = duo::parse_paper(text)) DUO_CHECK(paper->width_mm > 0 && paper->height_mm > 0);
+  if (const auto paper = duo::parse_paper(text)) DUO_CHECK(paper->short_mm > 0 && paper->short_mm < paper->long_mm);
   duo::SystemCalls none;  // a machine without cameras
   none.open = [](const std::string&) { return errno = ENOENT, -1; };
   if (duo::is_camera_name(text)) static_cast<void>(duo::camera_path(none, text));
