@@ -14,7 +14,7 @@ namespace {
 constexpr char kFooter[] =
     "Print it at 100 % (\"actual size\"), check the ruler on it, and tape it flat onto something stiff. PDF and SVG are "
     "vector\n"
-    "graphics; a PNG has 254 dots an inch and says so. ChArUco boards are OpenCV's (4.6 and later) with the markers of\n"
+    "graphics; a PNG has 254 dots per inch. ChArUco boards are OpenCV's (4.6 and later) with the markers of\n"
     "DICT_4X4, 5X5 or 6X6; unlike a chessboard they may be cut by the picture's border. How to go on: docs/calibrate.md.\n\n"
     "Examples:\n"
     "  duoptic board -o board.pdf\n"

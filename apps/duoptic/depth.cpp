@@ -228,8 +228,7 @@ Command add(CLI::App& app) {
   options->engine.add_to(*sub);
   sub->add_flag("--confidence", options->confidence,
                 "Write confidence.png, too: 1 doubtful .. 255 sure, 0 = unknown (matcher sgm)");
-  sub->add_flag("--keep-rows", options->keep_rows,
-                "Take the rows of a pair without a rig as they are; else they are put right where they disagree");
+  sub->add_flag("--keep-rows", options->keep_rows, "Do not correct the rows of a pair without a rig");
   sub->add_flag("--json", options->json, "Print the summary as JSON");
   sub->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
   sub->footer(kFooter);

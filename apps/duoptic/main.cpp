@@ -71,7 +71,7 @@ void add_limit_option(CLI::App& app) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Two cameras in, dense depth out.", "duoptic");
+  CLI::App app("Two webcams as a depth camera and 3D motion tracker.", "duoptic");
   app.require_subcommand(1);
   app.footer(kFooter);
 #define DUO_ADD(name) name::add(app),

@@ -50,7 +50,7 @@ std::string parameter_help() {
 }
 
 std::string preset_help() {
-  std::string text = "The matcher's set of parameters;";
+  std::string text = "A named set of the matcher's parameters;";
   for (const std::string& matcher : matcher_names())
     text += fmt::format(" {}: {};", matcher, fmt::join(matcher_presets(matcher), ", "));
   text.pop_back();
@@ -73,16 +73,16 @@ EngineOptions::EngineOptions() : threads(std::max(1, static_cast<int>(std::threa
 void EngineOptions::add_to(CLI::App& app) {
   std::vector<std::string> denoise_names;
   for (const auto& [name, value] : kDenoise) denoise_names.push_back(name);
-  app.add_option(
-         "--engine", engine,
-         "auto: the graphics card, else simd; ref: the plain definition; simd: fast, same bits; vulkan: the graphics card, "
-         "vulkan:0 or vulkan:NAME: the device of that index or with that in its name, see duoptic devices")
+  app.add_option("--engine", engine,
+                 "auto: the graphics card if there is one, else simd; ref: plain loops, slow; simd: the CPU's vectors; vulkan: "
+                 "the graphics card, "
+                 "vulkan:0 or vulkan:NAME: the card of that index or name, see duoptic devices. All give the same bits")
       ->check(known_engine())
       ->capture_default_str();
-  app.add_option("--threads", threads, "Threads; the result does not depend on them")
+  app.add_option("--threads", threads, "Number of threads; the result does not depend on it")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
-  const CLI::Option* method = app.add_option("--matcher", matcher, "Stereo method; left out: the one that has the preset")
+  const CLI::Option* method = app.add_option("--matcher", matcher, "Stereo method; without it, the one that has the preset")
                                   ->check(CLI::IsMember(matcher_names()))
                                   ->capture_default_str();
   app.add_option("--preset", preset, preset_help())->capture_default_str();

@@ -169,7 +169,7 @@ Subcommands add_subcommands(CLI::App& rig, Options& options) {
   CLI::App* refine = rig.add_subcommand("refine", "Put a nudged rig right, from any scene");
   refine->add_option("RIG", options.rig, "Rig file")->required();
   add_pictures(*refine, true);
-  add_output(*refine, "The rig put right; without it the change is only told", false);
+  add_output(*refine, "File for the corrected rig; without it the change is only printed", false);
   add_json(*refine);
   refine->footer(kRefineFooter);
 

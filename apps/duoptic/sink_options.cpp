@@ -21,16 +21,17 @@ constexpr SinkKind kSinkKinds[] = {
        DUO_TRY_ASSIGN(const Axes axes, axes_of(options.axes));
        return make_csv(target, axes);
      }},
-    {"--bvh", "FILE", "Motion for Blender and other animation programs, metres, y up", "BVH", ".bvh",
+    {"--bvh", "FILE", "Motion for Blender and other animation programs; metres, y up", "BVH", ".bvh",
      [](const std::string& target, const SinkOptions&, const TrackHeader& header, std::string&) -> Made {
        return make_bvh(target, header);
      }},
-    {"--osc", "HOST:PORT", "Send OSC messages per frame by UDP, send-only", "OSC", "127.0.0.1:9000",
+    {"--osc", "HOST:PORT", "Send OSC messages by UDP; nothing is received", "OSC", "127.0.0.1:9000",
      [](const std::string& target, const SinkOptions& options, const TrackHeader&, std::string&) -> Made {
        DUO_TRY_ASSIGN(const Axes axes, axes_of(options.axes));
        return make_osc(target, axes);
      }},
-    {"--vmc", "HOST:PORT", "Send avatar bones (Virtual Motion Capture protocol) by UDP, send-only", "VMC", "127.0.0.1:39539",
+    {"--vmc", "HOST:PORT", "Send avatar bones (Virtual Motion Capture protocol) by UDP; nothing is received", "VMC",
+     "127.0.0.1:39539",
      [](const std::string& target, const SinkOptions&, const TrackHeader&, std::string&) -> Made { return make_vmc(target); }},
 };
 constexpr std::size_t kLines = 0, kVideo = 1;

@@ -24,7 +24,7 @@ constexpr char kFooter[] =
     "frame: x right, y down, z forward), its place in the raw left picture, its state (seen, inferred = hidden but known "
     "within\n"
     "sigma, lost) and one standard deviation. Two runs give the same bytes.\n"
-    "Cameras run until Ctrl-C, which ends the files; a frame that comes too late is left out (skew_ms: the right picture's\n"
+    "Cameras run until Ctrl-C, which ends the files; a frame that comes too late is dropped (skew_ms: the right picture's\n"
     "time after the left's).\n\n"
     "Examples:\n"
     "  duoptic track left.avi right.avi --rig rig.json --select hand=451,360 --select elbow=478,285 --select shoulder=446,201\n"

@@ -19,11 +19,13 @@ int disparity_at(double z_m, const Rig& rig) {
 
 void TrackingOptions::add_to(CLI::App& app) {
   engine.add_to(app);
-  app.add_option("--max-disparity", max_disparity,
-                 fmt::format("Searches 0 .. N-1 px; without it, as far as {} m needs, 256 at most", kNearest_m))
+  app.add_option(
+         "--max-disparity", max_disparity,
+         fmt::format("Searches disparities of 0 .. N-1 px; without it, down to a distance of {} m, with N of 256 at most",
+                     kNearest_m))
       ->type_name("N")
       ->check(CLI::Range(1, Engine::kMaxDisparity));
-  app.add_option("--tracker", tracker, "arm: hand, elbow and shoulder, through hiding; thesis: three blobs as in 2010")
+  app.add_option("--tracker", tracker, "arm: hand, elbow and shoulder, also while they are hidden; thesis: the method of 2010")
       ->check(CLI::IsMember(tracker_names()))
       ->capture_default_str();
 }
