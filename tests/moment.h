@@ -13,7 +13,7 @@ inline TrackHeader clip_header(Size size) {
   r.matcher_preset = "default";
   r.tracker = "arm";
   r.skeletons = {&kRightArm};
-  r.rectified = {size, 500, size.width / 2.0, size.height / 2.0, 0.125, {}, {}};
+  r.rectified = {{500, size.width / 2.0, size.height / 2.0, 0.125}, size, {}, {}};
   r.size = size;
   return r;
 }
