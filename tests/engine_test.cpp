@@ -152,7 +152,9 @@ TEST(Engine, AFrameBelongsToWhoHoldsIt) {
       const auto frame = run(*engine, pair);
       EXPECT_EQ(std::count(held.begin(), held.end(), frame), 0);
     }
-    if (std::string(name) == "simd") EXPECT_EQ(test::allocations - before, 0);
+    if (std::string(name) == "simd") {
+      EXPECT_EQ(test::allocations - before, 0);
+    }
     engine.reset();
     for (int i = 2; i < kHeld; ++i)
       expect_frame(*wanted[static_cast<std::size_t>(i)], *held[static_cast<std::size_t>(i - 2)], i);
