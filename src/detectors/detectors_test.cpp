@@ -6,6 +6,7 @@
 #include "detectors/see_points.h"
 #include "detectors/truth_detector.h"
 #include "tests/agree.h"
+#include "tests/allocations.h"
 #include "tests/data.h"
 
 namespace duo {
@@ -209,6 +210,38 @@ TEST(PeopleFinder, TellsWhoIsWhereInAPictureByItself) {
   const auto people = finder.look(picture.view());
   ASSERT_EQ(people.size(), 2u) << "of three, as was asked";
   EXPECT_EQ(people[0].box_px, (Window{110, 120, 81, 311}));
+}
+
+TEST(PeopleFinder, AllocatesNothingPerPicture) {
+  TruthDetector detector(0.5);
+  PeopleFinder finder(detector, {.hands = true});
+  const Image<Rgb8> picture({640, 480});
+  for (int frame = 0; frame < 40; ++frame) {
+    const TrueBody bodies[] = {{standing(150 + 4 * frame, 250).points, {}, {}},
+                               {standing(500 - 2 * frame, 240).points, {}, {}}};
+    detector.show(bodies);
+    const long before = test::allocations;
+    finder.follow(picture.view());
+    if (frame >= 10) {
+      EXPECT_EQ(test::allocations, before) << frame;
+    }
+  }
+}
+
+TEST(NetDetector, AllocatesNothingPerPicture) {
+  const auto detector = make_detector({.body = BodyModel::kLite, .hands = true, .threads = 2});
+  ASSERT_TRUE(detector) << detector.error().what;
+  const Image<Rgb8> picture({320, 240});
+  const Look look{picture.view(), {160 * 256, 120 * 256, 100 * 256, 10 * 256}};
+  SeenBody body;
+  SeenHand hand;
+  for (int i = 0; i < 3; ++i) {
+    const long before = test::allocations;
+    (*detector)->find(picture.view(), Window::all(picture.size()));
+    (*detector)->bodies({&look, 1}, {&body, 1});
+    (*detector)->hands({&look, 1}, {&hand, 1});
+    EXPECT_EQ(test::allocations, before) << i;
+  }
 }
 
 TEST(TruthDetector, ItsNoiseIsAsWideAsAsked) {
