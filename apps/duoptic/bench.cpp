@@ -1,4 +1,5 @@
-// duoptic bench: time of each stage and of whole frames, beside OpenCV's matchers in the same process on the same pair.
+// duoptic bench: time of each stage and of whole frames, beside OpenCV's matchers in the same process on the same pair; of
+// networks.
 #include <fmt/format.h>
 #include <hwy/targets.h>
 
@@ -9,6 +10,7 @@
 #include <set>
 
 #include "bench_device.h"
+#include "bench_networks.h"
 #include "command.h"
 #include "duoptic/synthetic.h"
 #include "peers.h"
@@ -25,11 +27,16 @@ constexpr char kFooter[] =
     "compared with our whole frame and with our matching alone. All contestants take turns in one process; medians.\n"
     "On a device: GPU time of each stage, latency from pictures in memory to the frame, CPU time of the calling thread, "
     "frames/s\n"
-    "with two pairs in flight, bytes each way, with and without maps sent back; and how fast the device copies.\n\n"
+    "with two pairs in flight, bytes each way, with and without maps sent back; and how fast the device copies.\n"
+    "Networks: the whole of each on one picture. XNNPACK runs the same layers in floating point, where this build has it, with "
+    "the "
+    "best\n"
+    "instructions of the processor; the ratio is its CPU time by ours.\n\n"
     "Examples:\n"
     "  duoptic bench\n"
     "  duoptic bench --engine simd --size 640x480 --repeat 31 --json\n"
     "  duoptic bench --engine simd --instructions AVX2\n"
+    "  duoptic bench --what networks\n"
     "  duoptic bench --engine vulkan";
 
 constexpr int kMaxDisparity = 128;
@@ -37,7 +44,7 @@ constexpr int kMaxDisparity = 128;
 const std::set<std::string> kNotMatching = {"gray", "median", "gaussian", "rectify", "depth", "color"};
 
 struct Options {
-  std::string engine = "both", size = "both", instructions;
+  std::string what = "all", engine = "both", size = "both", instructions;
   int repeat = 11;
   bool json = false;
 };
@@ -217,6 +224,7 @@ Result<Exit> run(const Options& options) {
   if (!options.instructions.empty()) DUO_TRY(limit_instructions(options.instructions));
   nlohmann::json out = nlohmann::json::array();
   for (const Size size : {Size{640, 480}, Size{1280, 720}}) {
+    if (options.what == "networks") break;
     if (options.size != "both" && options.size != fmt::format("{}x{}", size.width, size.height)) continue;
     const SyntheticPair input = render_synthetic({.size = size}, 2);
     if (on_device(options.engine)) {
@@ -235,6 +243,11 @@ Result<Exit> run(const Options& options) {
       std::fflush(stdout);
     }
   }
+  if (options.what != "frames") {
+    const std::string engine = options.engine == "both" ? "simd" : options.engine;
+    DUO_TRY_ASSIGN(nlohmann::json networks, networks_table({engine, options.repeat, options.json}));
+    out.push_back({{"networks", std::move(networks)}});
+  }
   if (options.json) fmt::print("{}\n", out.dump(2));
   return Exit::kOk;
 }
@@ -242,8 +255,11 @@ Result<Exit> run(const Options& options) {
 }  // namespace
 
 Command add(CLI::App& app) {
-  CLI::App* sub = app.add_subcommand("bench", "Speed of each stage and of whole frames, beside OpenCV");
+  CLI::App* sub = app.add_subcommand("bench", "Speed of each stage, whole frames and networks, beside OpenCV and XNNPACK");
   const auto options = std::make_shared<Options>();
+  sub->add_option("--what", options->what, "Frames of depth, the networks of duoptic detect, or both")
+      ->check(CLI::IsMember({"all", "frames", "networks"}))
+      ->capture_default_str();
   sub->add_option("--engine", options->engine, "Which of our engines")
       ->check(CLI::Validator(
           [](std::string& name) {

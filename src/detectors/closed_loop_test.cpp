@@ -13,7 +13,7 @@
 #include "tests/data.h"
 #include "tests/model_files.h"
 #ifdef DUO_XNNPACK
-#include "tests/xnnpack_net.h"
+#include "nets/float_peer.h"
 #endif
 
 namespace duo {
@@ -86,13 +86,13 @@ struct PlacePx {
 class FloatLoop {
  public:
   FloatLoop(const Net& net, const TurnedSquare& start)
-      : net_(net), floats_(net), region_(start), crop_(kBodySide * kBodySide * 3) {}
+      : net_(net), floats_(std::move(*FloatPeer::make(net, 1))), region_(start), crop_(kBodySide * kBodySide * 3) {}
 
   std::array<PlacePx, kBodyPoints> look(View<const Rgb8> picture) {
     ref::crop_square16(picture, region_, Outside::kEdge, 0, {crop_.data(), {kBodySide, kBodySide}, 3});
     for (std::size_t i = 0; i < crop_.size(); ++i)
-      floats_.tensor(0)[i] = std::ldexp(static_cast<float>(crop_[i]), -net_.tensors[0].exponent);
-    floats_.run();
+      floats_->tensor(0)[i] = std::ldexp(static_cast<float>(crop_[i]), -net_.tensors[0].exponent);
+    floats_->run();
     std::array<PlacePx, kBodyPoints> out;
     for (std::size_t i = 0; i < kBodyPoints; ++i) out[i] = place(i);
     const PlacePx hips = place(kBodyPoints), top = place(kBodyPoints + 1);
@@ -103,8 +103,8 @@ class FloatLoop {
 
  private:
   PlacePx place(std::size_t i) {
-    const std::vector<float>& points = floats_.tensor(net_.output("points").value());
-    const std::vector<float>& heat = floats_.tensor(net_.output("heat").value());
+    const float* points = floats_->tensor(net_.output("points").value());
+    const float* heat = floats_->tensor(net_.output("heat").value());
     double u = points[5 * i], v = points[5 * i + 1];
     const int column = static_cast<int>(u / 4), row = static_cast<int>(v / 4);
     double sum = 0, sum_x = 0, sum_y = 0, most = 0;
@@ -128,7 +128,7 @@ class FloatLoop {
   }
 
   const Net& net_;
-  test::XnnpackNet floats_;
+  std::unique_ptr<FloatPeer> floats_;
   TurnedSquare region_;
   std::vector<std::int16_t> crop_;
 };

@@ -37,11 +37,16 @@ struct RunVectors {
   void operator()(const DepthToSpace16&) const { simd::depth_to_space16(pool, x, y); }
 };
 
-/// Puts a layer's constants in the order of lanes, once, into `memory`; nothing for layers that take them as they are.
+/// Words of a layer's constants in the order of lanes; none for layers that take them as they are.
 template <class Layer>
-void pack_layer(Layer& layer, std::vector<std::int32_t>& memory) {
-  if constexpr (requires { pack(layer, std::span<std::int32_t>()); }) {
-    memory.resize(packed_words(layer));
+std::size_t words_of(const Layer& layer) {
+  if constexpr (requires { packed_words(layer); }) return packed_words(layer);
+  return 0;
+}
+
+template <class Layer>
+void pack_layer(Layer& layer, std::span<std::int32_t> memory) {
+  if constexpr (requires { pack(layer, memory); }) {
     pack(layer, memory);
     layer.packed = memory;
   }
@@ -52,9 +57,18 @@ void pack_layer(Layer& layer, std::vector<std::int32_t>& memory) {
 NetRun::NetRun(const Net& net, Loops loops)
     : net_(&net), loops_(loops), plan_(plan_memory(net)), memory_({static_cast<int>(plan_.count) + 64, 1}) {
   for (const NetLayer& layer : net.layers) works_.push_back(layer.work);
-  packed_.resize(works_.size());
-  if (loops_ == Loops::kVectors)
-    for (std::size_t i = 0; i < works_.size(); ++i) std::visit([&](auto& layer) { pack_layer(layer, packed_[i]); }, works_[i]);
+  if (loops_ == Loops::kPlain) return;
+  const auto words = [](const LayerWork& work) { return std::visit([](const auto& layer) { return words_of(layer); }, work); };
+  std::size_t all = 0;
+  for (const LayerWork& work : works_) all += words(work);
+  // One row, which begins at a multiple of 64 bytes; blocks of packed layers have that length, so that lanes load whole lines.
+  packed_ = Image<std::int32_t>({static_cast<int>(all), 1});
+  std::int32_t* at = packed_.row(0);
+  for (LayerWork& work : works_) {
+    const std::span memory(at, words(work));
+    std::visit([&](auto& layer) { pack_layer(layer, memory); }, work);
+    at += memory.size();
+  }
 }
 
 Tensor16 NetRun::tensor(int index) {

@@ -30,9 +30,9 @@ class NetRun {
   const Net* net_;
   Loops loops_;
   MemoryPlan plan_;
-  Image<std::int16_t> memory_;                     // one row
-  std::vector<LayerWork> works_;                   // the net's layers, packed for the loops
-  std::vector<std::vector<std::int32_t>> packed_;  // their memory, one a layer
+  Image<std::int16_t> memory_;    // one row
+  std::vector<LayerWork> works_;  // the net's layers, packed for the loops
+  Image<std::int32_t> packed_;    // their memory, one row
 };
 
 }  // namespace duo

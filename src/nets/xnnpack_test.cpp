@@ -3,10 +3,10 @@
 #include <ctime>
 #include <map>
 
+#include "nets/float_peer.h"
 #include "nets/net_run.h"
 #include "tests/agree.h"
 #include "tests/model_files.h"
-#include "tests/xnnpack_net.h"
 
 namespace duo {
 namespace {
@@ -28,8 +28,9 @@ TEST_P(BesideXnnpack, NearlyTheSameAndNeverSlower) {
   const auto net = read_net(test::model_path(GetParam()));
   ASSERT_TRUE(net) << net.error().what;
   NetRun ours(*net, NetRun::Loops::kVectors);
-  test::XnnpackNet floats(*net);
-  ASSERT_FALSE(HasFatalFailure());
+  const auto made = FloatPeer::make(*net, 1);
+  ASSERT_TRUE(made) << made.error().what;
+  FloatPeer& floats = **made;
   Pool one(1);
   double ours_ms = 1e9, floats_ms = 1e9;
   std::map<std::string, std::pair<double, double>> squares;  // of an output's deviations and values

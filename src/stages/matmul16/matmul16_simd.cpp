@@ -20,8 +20,7 @@ using MatmulD = hn::CappedTag<std::int32_t, kMatmulBlock>;
 using MatmulV = hn::Vec<MatmulD>;
 constexpr int kMatmulLanes = static_cast<int>(hn::MaxLanes(MatmulD()));
 constexpr int kTilePixels = HWY_TARGET == HWY_AVX3_DL ? 8 : 4;
-constexpr int kPanelPixels = 64;  // so many pixels meet a block's weights while these are near
-constexpr int kNear = 16 << 10;   // bytes of weights that stay near while all blocks are used
+constexpr int kPanelPixels = 64;  // so many pixels use a block's weights, one after the other
 constexpr int kChunkPairs = kMatmulChunk / 2;
 
 // Where vectors of outputs lie in the packed layer, and what they are asked for.
@@ -106,10 +105,9 @@ void panel(const Matmul16& layer, ConstTensor16 x, Tensor16 y, int p, int p_end,
 }
 
 void matmul_part(const Matmul16& layer, ConstTensor16 x, Tensor16 y, int p_begin, int p_end, int n_begin, int n_end) {
-  const int pixels = layer.inputs * (n_end - n_begin) * 2 <= kNear ? kTilePixels : kPanelPixels;
-  for (int p = p_begin; p < p_end; p += pixels)
+  for (int p = p_begin; p < p_end; p += kPanelPixels)
     for (int n = n_begin; n < n_end; n += 2 * kMatmulLanes) {
-      const int end = std::min(p + pixels, p_end);
+      const int end = std::min(p + kPanelPixels, p_end);
       n + kMatmulLanes < n_end ? panel<2>(layer, x, y, p, end, n) : panel<1>(layer, x, y, p, end, n);
     }
 }

@@ -1,0 +1,77 @@
+#include "bench_networks.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "duoptic/detector.h"
+#include "duoptic/network.h"
+#include "timing.h"
+
+namespace duo::app::bench {
+namespace {
+
+constexpr const char* kNetworks[] = {"person_detector", "body_lite", "body_full", "body_heavy", "hand_lite", "hand_full"};
+
+struct Timed {
+  Times ours, peer;
+  bool has_peer = false;
+};
+
+Result<Timed> measure_network(const std::filesystem::path& path, const NetworksBench& what, int threads) {
+  DUO_TRY_ASSIGN(const auto ours, open_network(path, what.engine, threads));
+  std::unique_ptr<Network> peer;
+  // It refuses one of the layers of body_heavy.
+  if (has_xnnpack() && what.engine == "simd")
+    if (auto opened = open_network(path, "XNNPACK", threads)) peer = std::move(*opened);
+  std::vector<Times> of_ours, of_peer;
+  Result<void> ran;
+  const auto run = [&](Network& network) {
+    return timed([&] {
+      if (auto result = network.run(); !result) ran = result;
+    });
+  };
+  run(*ours);  // warm-up
+  if (peer) run(*peer);
+  for (int r = 0; r < (what.engine == "ref" ? 1 : what.repeat); ++r) {
+    of_ours.push_back(run(*ours));
+    if (peer) of_peer.push_back(run(*peer));
+  }
+  DUO_TRY(ran);
+  return Timed{median(of_ours), median(of_peer), peer != nullptr};
+}
+
+}  // namespace
+
+Result<nlohmann::json> networks_table(const NetworksBench& what) {
+  nlohmann::json out = nlohmann::json::array();
+  const auto say = [&]<class... T>(fmt::format_string<T...> text, T&&... values) {
+    if (!what.json) fmt::print(text, std::forward<T>(values)...);
+  };
+  for (const int threads : {1, 2}) {
+    if (threads > 1 && what.engine != "simd") break;
+    say("\nnetworks, {}\n{:<22} {:>9} {:>9}   XNNPACK: {:>9} {:>9} {:>6}\n",
+        what.engine == "simd" ? fmt::format("{} thread{}", threads, threads == 1 ? "" : "s") : what.engine, "", "wall ms",
+        "CPU ms", "wall ms", "CPU ms", "ratio");
+    for (const char* name : kNetworks) {
+      const std::filesystem::path path = models_folder() / (std::string(name) + ".net");
+      if (!std::filesystem::exists(path)) continue;
+      DUO_TRY_ASSIGN(const Timed times, measure_network(path, what, threads));
+      nlohmann::json row = {
+          {"name", name}, {"threads", threads}, {"wall_ms", times.ours.wall_ms}, {"cpu_ms", times.ours.cpu_ms}};
+      say("{:<22} {:9.2f} {:9.2f}", name, times.ours.wall_ms, times.ours.cpu_ms);
+      if (times.has_peer) {
+        const double ratio = times.ours.cpu_ms > 0 ? times.peer.cpu_ms / times.ours.cpu_ms : 0;
+        row["xnnpack"] = {{"wall_ms", times.peer.wall_ms}, {"cpu_ms", times.peer.cpu_ms}, {"ratio_cpu", ratio}};
+        say("            {:9.2f} {:9.2f} {:6.2f}", times.peer.wall_ms, times.peer.cpu_ms, ratio);
+      }
+      say("\n");
+      if (!what.json) std::fflush(stdout);
+      out.push_back(std::move(row));
+    }
+  }
+  if (out.empty()) say("networks: none in {}\n", models_folder().string());
+  return out;
+}
+
+}  // namespace duo::app::bench
