@@ -41,3 +41,13 @@ MODELS = {
     "hand_full": Entry(HANDS, "hand_landmark_full.tflite", by_name(HAND), 0, 255, 7),
 }
 ON_DEMAND = ("body_heavy",)
+
+# sha256 of what make writes, on every machine.
+RESULTS = {
+    "person_detector": "15067fca84ba80374df9cdba69580f4534e554ce2da405efb29192da36085d42",
+    "body_lite": "784844aab54983d5a6699496b5c89f503658056ef4b8c23ebdc80190da6f07d3",
+    "body_full": "85d04a30471c79493af04227c4b11cde26335649fcb9b25eb6e17223786c1e02",
+    "body_heavy": "2ebf7139317bb4aeb845de9af5d2bcbe10270d957eb771bb3767614dee6571a8",
+    "hand_lite": "f7f8044e2f36535fd6ac1d8156c010f0dbe5db1602d3844dd092c5c5ad8053dd",
+    "hand_full": "1d1b0292e44703641bf18e0fddda5e30433cdab81134e8ad033952d053c49ae6",
+}
