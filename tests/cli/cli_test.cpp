@@ -296,8 +296,8 @@ TEST_F(Cli, ALargestPictureIsAnOption) {
   EXPECT_EQ(run("depth left.png right.png --max-disparity 16 -o out --max-megapixels 0.0192").exit, 0);
 }
 
-/// Fewer threads than asked for: the result does not depend on them. Memory and files that the machine refuses: exit 1, which
-/// says so, and nothing is left.
+/// Fewer threads for a frame than asked for: the result does not depend on them. Where the machine refuses those that read and
+/// match, or memory, or files: exit 1, which says so, and nothing is left.
 TEST_F(Cli, GoesOnWithFewerThreadsAndSaysWhatTheMachineRefuses) {
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
@@ -307,10 +307,16 @@ TEST_F(Cli, GoesOnWithFewerThreadsAndSaysWhatTheMachineRefuses) {
   const std::string preload = "LD_PRELOAD='" DUO_FAULTS_LIBRARY "' DUO_FAULTS=";
   const std::string depth = "depth left.png right.png --max-disparity 16 --engine simd --threads 4 ";
   ASSERT_EQ(run(depth + "-o whole").exit, 0);
-  for (const char* threads : {"1+", "2+", "3", "4+"}) {
+  for (const char* threads : {"1", "2", "3"}) {  // of those that share a frame
     const Ended ended = run(depth + "-o few", preload + "threads=" + threads);
     EXPECT_EQ(ended.exit, 0) << ended.err;
     EXPECT_EQ(bytes_of(at("few/disparity.pfm")), bytes_of(at("whole/disparity.pfm")));
+  }
+  for (const char* threads : {"1+", "3+", "4+"}) {  // also those that read and match
+    const Ended ended = run(depth + "-o out", preload + "threads=" + threads);
+    EXPECT_EQ(ended.exit, 1) << ended.err;
+    EXPECT_NE(ended.err.find("cannot start a thread to"), std::string::npos) << ended.err;
+    EXPECT_FALSE(fs::exists(at("out")));
   }
   int refused = 0;
   for (int n = 1; n < 600; n += 1 + n / 4)
