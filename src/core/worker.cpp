@@ -17,6 +17,8 @@ Result<void> without_exceptions(const std::string& what, const std::function<Res
     return work();
   } catch (const std::bad_alloc&) {
     return Error{ErrorCode::kExhausted, "cannot " + what + ": out of memory; smaller pictures need less"};
+  } catch (const std::system_error& e) {
+    return Error{ErrorCode::kExhausted, "cannot " + what + ": " + e.code().message()};
   } catch (const std::exception& e) {
     return Error{ErrorCode::kUnsupported, "cannot " + what + ": " + e.what()};
   }
@@ -44,7 +46,7 @@ Result<Worker> Worker::start(std::string what, Work work, std::function<void(con
     worker.thread_ = std::jthread(run);
   } catch (const std::system_error& e) {
     return Error{ErrorCode::kExhausted, "cannot start a thread to " + name + ": " + e.code().message() +
-                                              "; end other programs, or allow more threads (ulimit -u)"};
+                                            "; end other programs, or allow more threads (ulimit -u)"};
   }
   return worker;
 }

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "duoptic/bounded_queue.h"
 #include "core/check.h"
 #include "core/object_pool.h"
+#include "duoptic/bounded_queue.h"
 #include "duoptic/worker.h"
 #include "engines/engines.h"
 #include "engines/simd_frames.h"
@@ -132,11 +132,12 @@ class SimdEngine final : public Engine {
     try {
       for (int i = 0; at_once > 1 && i < at_once; ++i) {
         auto thread = FrameThread::start(prepared_, threads_ / at_once + (i < threads_ % at_once));
-        if (!thread) break;  // the system allows no more: those there are do all
+        if (!thread) break;  // fewer threads go on
         threads_of_frames_.push_back(std::move(*thread));
       }
       if (threads_of_frames_.empty()) alone_ = std::make_unique<SimdFrames>(prepared_, threads_);
-      frames_ = ObjectPool<Frame>(static_cast<std::size_t>(at_once + kSpareFrames), [this] { return make_frame(prepared_); });
+      frames_ =
+          ObjectPool<Frame>(static_cast<std::size_t>(in_flight() + kSpareFrames), [this] { return make_frame(prepared_); });
     } catch (const std::bad_alloc&) {
       const Setup& setup = prepared_.setup;
       return Error{ErrorCode::kExhausted,
