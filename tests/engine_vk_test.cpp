@@ -9,6 +9,7 @@
 #include "tests/agree_vk.h"
 #include "tests/allocations.h"
 #include "tests/watched_device.h"
+#include "vulkan/frame_on_device.h"
 
 namespace duo {
 namespace {
@@ -126,6 +127,35 @@ TEST(VulkanEngine, CutsTheWindowsOfEachPair) {
   expect_same_frame(*run(*reference, scenes[0].pair), *vulkan->collect(), "in a window");
   reference->look_at({});
   expect_same_frame(*run(*reference, scenes[1].pair), *vulkan->collect(), "whole");
+}
+
+// What stays on the device is there for the two last frames; whoever uses an older one, or one whose engine is gone, is told.
+TEST(VulkanEngine, FramesOnTheDeviceAreThereOrSayThatTheyAreNot) {
+  const SyntheticPair scene = room();
+  duo::Setup setup = setup_for(scene);
+  setup.wants = {.views = false, .disparity = false, .on_device = true};
+  OwnDevice device;
+  auto vulkan = prepared(device.engine(), setup);
+  const auto uses = [](const Frame& frame) {
+    return dynamic_cast<vk::FrameOnDevice&>(*frame.on_device).use([](const auto&, int) { return Result<void>(); }).has_value();
+  };
+  std::vector<std::shared_ptr<const Frame>> frames;
+  for (std::size_t i = 0; i < 6; ++i) {
+    frames.push_back(run(*vulkan, scene.pair));
+    ASSERT_NE(frames[i]->on_device, nullptr);
+    EXPECT_TRUE(uses(*frames[i])) << i;
+    EXPECT_TRUE(i == 0 || uses(*frames[i - 1])) << i;
+  }
+  EXPECT_FALSE(uses(*frames[0]));
+  EXPECT_FALSE(uses(*frames[1]));
+  EXPECT_TRUE(uses(*frames[5])) << "an old frame takes nothing from a new one";
+  EXPECT_EQ(vulkan->take_event(), "");
+  ASSERT_TRUE(vulkan->prepare(setup));
+  EXPECT_FALSE(uses(*frames[5])) << "of the setup before";
+  frames.push_back(run(*vulkan, scene.pair));
+  EXPECT_TRUE(uses(*frames[6]));
+  vulkan.reset();
+  EXPECT_FALSE(uses(*frames[6]));
 }
 
 TEST(VulkanEngine, SendsOnlyWhatIsWanted) {

@@ -17,9 +17,36 @@
 namespace duo {
 namespace {
 
+class VulkanEngine;
+
+/// What frames that stay on the device share with their engine, and may outlive it with.
+struct InUse {
+  std::mutex mutex;                // held while someone uses a frame on the device, and while the engine's work changes
+  VulkanEngine* engine = nullptr;  // null once it is gone
+};
+
+/// A frame of the pool, and what its on_device points to.
+struct DeviceFrame : Frame {
+  class Handle final : public vk::FrameOnDevice {
+   public:
+    Result<void> use(const Work& work) override;
+    std::shared_ptr<InUse> in_use;
+    int slot = 0;
+    std::uint64_t number = 0;  // of the frames that the slot has had
+  };
+  explicit DeviceFrame(Frame made) : Frame(std::move(made)) {}
+  Handle handle;
+};
+
 class VulkanEngine final : public Engine {
  public:
-  VulkanEngine(std::unique_ptr<vk::Device> device, int threads) : device_(std::move(device)), threads_(threads) {}
+  VulkanEngine(std::unique_ptr<vk::Device> device, int threads) : device_(std::move(device)), threads_(threads) {
+    in_use_->engine = this;
+  }
+  ~VulkanEngine() override {
+    const std::lock_guard lock(in_use_->mutex);
+    in_use_->engine = nullptr;
+  }
 
   const char* name() const override { return cpu_ != nullptr ? cpu_->name() : "vulkan"; }
   std::string device() const override { return cpu_ != nullptr ? std::string() : device_name_; }
@@ -30,9 +57,10 @@ class VulkanEngine final : public Engine {
   Result<void> prepare(const Setup& setup) override {
     DUO_TRY_ASSIGN(Prepared checked, prepare_setup(setup));
     auto prepared = std::make_unique<Prepared>(std::move(checked));
-    const std::lock_guard lock(using_);
+    const std::lock_guard lock(in_use_->mutex);
     failed_ = false;
-    work_.reset();  // first: it speaks of the old setup, and there need not be memory for both
+    for (Slot& slot : had_) slot.next();  // frames of the old setup are gone
+    work_.reset();                        // first: it speaks of the old setup, and there need not be memory for both
     if (device_ != nullptr) {
       auto work = vk::Frames::make(device_, *prepared);
       if (work) {
@@ -46,7 +74,7 @@ class VulkanEngine final : public Engine {
     first_ = count_ = 0;
     slots_ = work_ != nullptr ? work_->slots() : vk::Frames::kInFlight;
     if (work_ == nullptr) return prepare_cpu();
-    frames_ = ObjectPool<Frame>(in_flight() + kSpareFrames, [this] { return work_->make_frame(); });
+    frames_ = ObjectPool<DeviceFrame>(in_flight() + kSpareFrames, [this] { return DeviceFrame(work_->make_frame()); });
     return {};
   }
 
@@ -60,6 +88,7 @@ class VulkanEngine final : public Engine {
     windows_of_[static_cast<std::size_t>(slot)] = windows_;
     if (failed_) go_on_with_cpu(why_failed_);
     if (work_ == nullptr) return;
+    had_[static_cast<std::size_t>(slot)].next();
     if (const auto started = work_->submit(slot, pair); !started) go_on_with_cpu(started.error());
   }
 
@@ -70,7 +99,7 @@ class VulkanEngine final : public Engine {
     --count_;
     const Pair& pair = *pairs_[static_cast<std::size_t>(slot)];
     if (work_ != nullptr) {
-      const std::shared_ptr<Frame> made = frames_.lend();
+      const std::shared_ptr<DeviceFrame> made = frames_.lend();
       Frame& frame = *made;
       const auto done = work_->collect(slot, frame);
       if (done) {
@@ -78,7 +107,10 @@ class VulkanEngine final : public Engine {
         frame.t_ns = pair.left.t_ns;
         frame.skew_ns = pair.right.t_ns - pair.left.t_ns;
         keep_windows(windows_of_[static_cast<std::size_t>(slot)], frame);
-        frame.on_device = work_->on_device() != nullptr ? &on_device_[static_cast<std::size_t>(slot)] : nullptr;
+        made->handle.in_use = in_use_;
+        made->handle.slot = slot;
+        made->handle.number = had_[static_cast<std::size_t>(slot)].number;
+        frame.on_device = work_->on_device() != nullptr ? &made->handle : nullptr;
         return made;
       }
       go_on_with_cpu(done.error());
@@ -88,26 +120,32 @@ class VulkanEngine final : public Engine {
     return cpu_->collect();
   }
 
- private:
-  /// The frame in one slot. What goes wrong in the tracker's thread is left to the engine's: only that one gives the device up.
-  class Slot final : public vk::FrameOnDevice {
-   public:
-    Slot(VulkanEngine& engine, int slot) : engine_(engine), slot_(slot) {}
-    Result<void> use(const Work& work) override {
-      const std::lock_guard lock(engine_.using_);
-      if (engine_.work_ == nullptr || engine_.failed_)
-        return Error{ErrorCode::kDeviceLost, "use a frame on its device: the device is lost; take the next frame"};
-      auto used = work(engine_.work_->on_device(), slot_);
-      if (!used) {
-        engine_.why_failed_ = used.error();
-        engine_.failed_ = true;
-      }
-      return used;
+  /// While the engine's work does not change. What goes wrong in the tracker's thread is left to the engine's: only that one
+  /// gives the device up.
+  Result<void> use(int slot, std::uint64_t number, const vk::FrameOnDevice::Work& work) {
+    if (work_ == nullptr || failed_)
+      return Error{ErrorCode::kDeviceLost, "use a frame on its device: the device is lost; take the next frame"};
+    Slot& at = had_[static_cast<std::size_t>(slot)];
+    const std::lock_guard lock(at.mutex);
+    if (at.number != number)
+      return Error{ErrorCode::kDeviceLost, "use a frame on its device: a newer one has taken its place; take the newest"};
+    auto used = work(work_->on_device(), slot);
+    if (!used) {
+      why_failed_ = used.error();
+      failed_ = true;
     }
+    return used;
+  }
 
-   private:
-    VulkanEngine& engine_;
-    const int slot_;
+ private:
+  /// The frame whose maps lie in a slot. One that is used there stays until it no longer is.
+  struct Slot {
+    std::mutex mutex;
+    std::uint64_t number = 0;
+    void next() {
+      const std::lock_guard lock(mutex);
+      ++number;
+    }
   };
 
   /// While nobody uses the device.
@@ -125,7 +163,7 @@ class VulkanEngine final : public Engine {
   }
 
   void go_on_with_cpu(const Error& why) {
-    const std::lock_guard lock(using_);
+    const std::lock_guard lock(in_use_->mutex);
     give_up(why);
     failed_ = false;
     DUO_CHECK(prepare_cpu());  // its setup has been checked
@@ -137,17 +175,24 @@ class VulkanEngine final : public Engine {
   std::unique_ptr<Prepared> prepared_ = std::make_unique<Prepared>();
   std::unique_ptr<vk::Frames> work_;  // after what it refers to
   std::unique_ptr<Engine> cpu_;       // once the device was lost, and for setups that are none for it
-  ObjectPool<Frame> frames_;
+  ObjectPool<DeviceFrame> frames_;
   std::array<const Pair*, vk::Frames::kSlots> pairs_{};  // in flight: count_ of them from first_
   std::vector<Window> windows_;                          // of the next submit
   std::array<std::vector<Window>, vk::Frames::kSlots> windows_of_;
   int first_ = 0, count_ = 0, slots_ = vk::Frames::kInFlight;
   std::string event_;
-  std::mutex using_;                  // held while someone uses a frame on the device, and while work_ changes
+  std::shared_ptr<InUse> in_use_ = std::make_shared<InUse>();
+  std::array<Slot, vk::Frames::kSlots> had_;
   std::atomic<bool> failed_ = false;  // using one failed: why_failed_ says why, and stays as it is until this is taken back
   Error why_failed_;
-  std::array<Slot, vk::Frames::kSlots> on_device_{{{*this, 0}, {*this, 1}, {*this, 2}, {*this, 3}}};
 };
+
+Result<void> DeviceFrame::Handle::use(const Work& work) {
+  const std::lock_guard lock(in_use->mutex);
+  if (in_use->engine == nullptr)
+    return Error{ErrorCode::kDeviceLost, "use a frame on its device: its engine is gone; take the frames of another"};
+  return in_use->engine->use(slot, number, work);
+}
 
 }  // namespace
 

@@ -34,7 +34,8 @@ class FrameOnDevice : public DeviceMaps {
   /// Calls `work` while the engine leaves the device and the slot alone. After an error of `work` the engine gives the device
   /// up and goes on with the CPU.
   ///
-  /// Errors   the device is lost: nothing was called; those of `work`
+  /// Errors   the device or the engine is gone, or newer frames have taken the place of this one, which only the two last
+  ///          collected ones are safe from: nothing was called; those of `work`
   /// Threads  one at a time, which need not be the engine's caller
   virtual Result<void> use(const Work& work) = 0;
 };
