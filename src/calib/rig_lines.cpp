@@ -183,6 +183,7 @@ Result<Rig> rig_from_zed(const Lines& lines, const std::string& name, Size size)
 }  // namespace
 
 bool is_rig_of_lines(std::string_view text) {
+  if (text.starts_with("%YAML")) return false;  // OpenCV's files have a P2, too
   constexpr const char* kStarts[] = {"cam0=", "cam0 =", "P_rect_02:", "P2:", "[LEFT_CAM_"};
   return std::any_of(std::begin(kStarts), std::end(kStarts), [&](const char* start) {
     const std::size_t at = text.find(start);
