@@ -1,6 +1,5 @@
 #include "output.h"
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
@@ -82,11 +81,10 @@ OutputSet::OutputSet(OutputSet&& other) noexcept
       made_(std::exchange(other.made_, {})),
       names_(std::move(other.names_)) {}
 
+/// Asks for no memory: there may be none.
 OutputSet::~OutputSet() {
-  if (DIR* staged = staging_fd_ < 0 ? nullptr : ::fdopendir(staging_fd_)) {
-    while (const dirent* entry = ::readdir(staged)) ::unlinkat(::dirfd(staged), entry->d_name, 0);
-    ::closedir(staged);
-  }
+  for (const std::string& name : names_) ::unlinkat(staging_fd_, name.c_str(), 0);
+  if (staging_fd_ >= 0) ::close(staging_fd_);
   if (!staging_.empty()) ::unlinkat(folder_fd_, staging_.c_str(), AT_REMOVEDIR);
   if (folder_fd_ >= 0) ::close(folder_fd_);
   for (auto made = made_.rbegin(); made != made_.rend(); ++made) ::rmdir(made->c_str());  // only when empty

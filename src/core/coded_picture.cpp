@@ -31,12 +31,13 @@ std::string png(Size size, AVPixelFormat format, CopyRow&& copy_row) {
   encoder->flags |= AV_CODEC_FLAG_BITEXACT;
   encoder->compression_level = 1;  // of disparities a third larger than the best, in a third of the time
   av_opt_set(encoder->priv_data, "pred", "up", 0);
-  if (av::had_memory(avcodec_open2(encoder.get(), codec, nullptr)) < 0 ||
-      av::had_memory(av_frame_get_buffer(frame.get(), 0)) < 0)
+  // zlib says no more than that it failed, and memory is all that it may lack.
+  const auto had_memory = [](int result) { return av::had_memory(result == AVERROR_EXTERNAL ? AVERROR(ENOMEM) : result); };
+  if (had_memory(avcodec_open2(encoder.get(), codec, nullptr)) < 0 || had_memory(av_frame_get_buffer(frame.get(), 0)) < 0)
     return {};
   for (int y = 0; y < size.height; ++y) copy_row(y, frame->data[0] + std::ptrdiff_t{y} * frame->linesize[0]);
-  if (av::had_memory(avcodec_send_frame(encoder.get(), frame.get())) < 0 ||
-      av::had_memory(avcodec_receive_packet(encoder.get(), packet.get())) < 0)
+  if (had_memory(avcodec_send_frame(encoder.get(), frame.get())) < 0 ||
+      had_memory(avcodec_receive_packet(encoder.get(), packet.get())) < 0)
     return {};
   return {reinterpret_cast<const char*>(packet->data), static_cast<std::size_t>(packet->size)};
 }

@@ -13,7 +13,7 @@ Result<void> write(View<const T> picture, const std::filesystem::path& path) {
   if (!bytes.empty()) return write_file(path, bytes);
   return Error{ErrorCode::kWriteFailed,
                fmt::format("cannot write '{}': {}x{} pixels cannot be encoded as PNG; give a picture of at least one pixel",
-                           path.string(), picture.width(), picture.height())};
+                           shown(path).string(), picture.width(), picture.height())};
 }
 
 }  // namespace

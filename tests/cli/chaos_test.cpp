@@ -255,6 +255,7 @@ class Round {
       if (below(3) == 0) {
         put(folder_ / "unplugged", "");
         tell("unplugged");
+        exhausts_ = true;  // so is a camera that is gone from the start
         rest(400);
         if (below(2) == 0) fs::remove(folder_ / "unplugged");
       }
