@@ -79,6 +79,8 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
     if (name == options.model) wish.body = model;
   wish.hands = options.hands;
   wish.plain = options.engine == "ref";
+  if (options.engine.starts_with("vulkan"))
+    wish.device = options.engine.substr(std::min<std::size_t>(options.engine.size(), 7));
   wish.threads = options.threads;
   DUO_TRY_ASSIGN(const std::unique_ptr<Detector> detector, make_detector(wish));
   DUO_TRY_ASSIGN(const std::unique_ptr<Source> source, open_source(options.input));
@@ -133,8 +135,12 @@ Command add(CLI::App& app) {
       ->check(CLI::IsMember(models))
       ->capture_default_str();
   sub->add_flag("--hands", options->hands, "Find the points of hands, too");
-  sub->add_option("--engine", options->engine, "ref: plain loops, slow; simd: the processor's vectors; the same results")
-      ->check(CLI::IsMember({"ref", "simd"}))
+  sub->add_option("--engine", options->engine,
+                  "ref: plain loops, slow; simd: the processor's vectors; vulkan[:DEVICE]; the same results")
+      ->check([](const std::string& engine) {
+        const bool known = engine == "ref" || engine == "simd" || engine == "vulkan" || engine.starts_with("vulkan:");
+        return known ? std::string() : fmt::format("'{}' is none of ref, simd, vulkan[:DEVICE]", engine);
+      })
       ->capture_default_str();
   sub->add_option("--threads", options->threads, "Threads; results do not depend on them")
       ->check(CLI::Range(1, 256))

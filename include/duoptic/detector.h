@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -135,6 +136,8 @@ struct DetectorOptions {
   BodyModel body = BodyModel::kFull;
   bool hands = false;  // with body kLite the hand's smaller network, too
   bool plain = false;  // on plain loops, slowly: the definition
+  std::optional<std::string> device =
+      {};  // a Vulkan device by its index or name, empty: the graphics card; none: the processor
   int threads = 1;
   std::filesystem::path models = {};  // folder of the networks; empty: models_folder()
 };
@@ -142,7 +145,7 @@ struct DetectorOptions {
 /// The folder of the networks: $DUOPTIC_MODELS, or the one that this program was built with.
 std::filesystem::path models_folder();
 
-/// Errors  a network is missing (how to get it), broken, cut, or another network than its name says
+/// Errors  a network is missing (how to get it), broken, cut, or another network than its name says; no such device
 Result<std::unique_ptr<Detector>> make_detector(const DetectorOptions& options);
 
 /// Where to look for a hand: around its knuckles, 30 cm wide at the body's scale, fingers up. None when it is outside the
