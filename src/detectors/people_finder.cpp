@@ -7,8 +7,9 @@ namespace duo {
 namespace {
 
 constexpr std::uint16_t kHalf = 16384;  // a probability of 0.5
+constexpr std::uint16_t kSure = 21299;  // 0.65: who is new has to be surer than who is followed
 constexpr int kSearchEvery = 4;         // pictures, while somebody is followed
-constexpr int kLooks = 3;               // at what was found
+constexpr int kLooks = 4;               // at what was found
 
 /// The whole picture first, then squares of 0.6 of its shorter side that overlap by a half: people too small for the whole.
 std::vector<Window> parts_of(Size size) {
@@ -41,11 +42,11 @@ PointQ8 four_centres(const SeenBody& body) {
 
 std::int64_t square(std::int64_t x, std::int64_t y) { return x * x + y * y; }
 
-/// Whether the torso moved by less than 1/40 of half the region between two looks, and is there in the second.
+/// Whether the torso moved by less than 1/50 of half the region between two looks, and is there in the second.
 bool rests(const SeenBody& first, const SeenBody& second) {
   const PointQ8 a = four_centres(first), b = four_centres(second);
   const std::int64_t half = half_side(second.next);
-  return second.score_q15 >= kHalf && 100 * square(a.x - b.x, a.y - b.y) < half * half;
+  return second.score_q15 >= kSure && 156 * square(a.x - b.x, a.y - b.y) < half * half;
 }
 
 /// Two bodies whose torsos' centres are less than half a torso apart are one.
