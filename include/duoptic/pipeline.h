@@ -49,8 +49,11 @@ struct RecordingStatus {
 /// Threads  one caller, and any for recording()
 class Pipeline {
  public:
+  /// `tracker`: one of the caller's own, in place of the one that `setup` names.
+  ///
   /// Errors  those of make_engine(), Engine::prepare(), make_tracker() and Tracker::prepare(); a tracker without a rig
-  static Result<Pipeline> open(std::unique_ptr<PairSource> pairs, PipelineSetup setup);
+  static Result<Pipeline> open(std::unique_ptr<PairSource> pairs, PipelineSetup setup,
+                               std::unique_ptr<Tracker> tracker = nullptr);
   Pipeline(Pipeline&&) noexcept;
   Pipeline& operator=(Pipeline&&) noexcept;
   ~Pipeline();

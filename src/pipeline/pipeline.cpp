@@ -67,12 +67,14 @@ Result<void> Pipeline::State::prepare() {
   header.live = live;
   if (setup.engine.empty()) return {};
 
-  if (!setup.tracker.empty()) {
+  if (tracker != nullptr || !setup.tracker.empty()) {
     if (!of_engine.rig)
       return Error{ErrorCode::kBadInput,
                    fmt::format("cannot find joints in space with {}: it does not bring a rig; give one with --rig",
                                setup.names.empty() ? "the source" : setup.names[0])};
-    DUO_TRY_ASSIGN(tracker, make_tracker(setup.tracker));
+    if (tracker == nullptr) {
+      DUO_TRY_ASSIGN(tracker, make_tracker(setup.tracker));
+    }
     add_wants(tracker->wants(), of_engine.wants);
     header.tracker = tracker->name();
     header.skeletons.assign(tracker->skeletons().begin(), tracker->skeletons().end());
@@ -109,10 +111,11 @@ Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 Pipeline::~Pipeline() = default;
 
-Result<Pipeline> Pipeline::open(std::unique_ptr<PairSource> pairs, PipelineSetup setup) {
+Result<Pipeline> Pipeline::open(std::unique_ptr<PairSource> pairs, PipelineSetup setup, std::unique_ptr<Tracker> tracker) {
   auto state = std::make_unique<State>();
   state->setup = std::move(setup);
   state->waiting = std::move(pairs);
+  state->tracker = std::move(tracker);
   DUO_TRY(state->prepare());
   return Pipeline(std::move(state));
 }
