@@ -28,7 +28,11 @@ Exit exit_of(const Error& error) {
   return Exit::kUnexpected;
 }
 
-void say(const CLI::App& app, const std::string& line) { fmt::print(stderr, "duoptic {}: {}\n", app.get_name(), line); }
+void put_on_stderr(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
+void say(const CLI::App& app, const std::string& line) {
+  put_on_stderr(fmt::format("duoptic {}: {}\n", app.get_name(), line));
+}
 
 namespace {
 
@@ -47,7 +51,7 @@ bool wants_json(int argc, char** argv) {
 int fail(const std::string& command, std::string what, Exit exit, bool json) {
   for (char& c : what)
     if (c == '\n') c = ' ';
-  fmt::print(stderr, "duoptic{}{}: {}\n", command.empty() ? "" : " ", command, what);
+  put_on_stderr(fmt::format("duoptic{}{}: {}\n", command.empty() ? "" : " ", command, what));
   const nlohmann::json error = {{"error", {{"exit", static_cast<int>(exit)}, {"what", what}}}};
   if (json) fmt::print("{}\n", error.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   return static_cast<int>(exit);

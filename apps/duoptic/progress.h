@@ -15,7 +15,7 @@ class Progress {
  public:
   Progress(const CLI::App& app, std::int64_t count, bool quiet) : app_(app), count_(count), quiet_(quiet) {}
   ~Progress() {
-    if (shown_ && terminal_) fmt::print(stderr, "\r\033[K");
+    if (shown_ && terminal_) put_on_stderr("\r\033[K");
   }
   void frame(std::int64_t number) {
     const auto now = Clock::now();
@@ -24,7 +24,7 @@ class Progress {
     shown_ = true;
     const std::string line = count_ > 0 ? fmt::format("frame {} of {}", number, count_) : fmt::format("frame {}", number);
     if (terminal_)
-      fmt::print(stderr, "\rduoptic {}: {}", app_.get_name(), line);
+      put_on_stderr(fmt::format("\rduoptic {}: {}", app_.get_name(), line));
     else
       say(app_, line);
   }
