@@ -30,9 +30,7 @@ Exit exit_of(const Error& error) {
 
 void put_on_stderr(const std::string& text) { std::fputs(text.c_str(), stderr); }
 
-void say(const CLI::App& app, const std::string& line) {
-  put_on_stderr(fmt::format("duoptic {}: {}\n", app.get_name(), line));
-}
+void say(const CLI::App& app, const std::string& line) { put_on_stderr(fmt::format("duoptic {}: {}\n", app.get_name(), line)); }
 
 namespace {
 
@@ -53,7 +51,7 @@ int fail(const std::string& command, std::string what, Exit exit, bool json) {
     if (c == '\n') c = ' ';
   put_on_stderr(fmt::format("duoptic{}{}: {}\n", command.empty() ? "" : " ", command, what));
   const nlohmann::json error = {{"error", {{"exit", static_cast<int>(exit)}, {"what", what}}}};
-  if (json) fmt::print("{}\n", error.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (json) std::fputs((error.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n").c_str(), stdout);
   return static_cast<int>(exit);
 }
 
