@@ -150,10 +150,18 @@ TEST(Worker, TheDestructorAsksToStopAndWaits) {
   EXPECT_TRUE(stopped);
 }
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)  // g++
+#define DUO_SANITIZED
+#elif defined(__has_feature)  // clang
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define DUO_SANITIZED
+#endif
+#endif
+
 // A system without threads left: root has no such limit, so an address space that a thread's stack does not fit into stands for
 // it.
 TEST(Worker, ARefusedThreadIsAnError) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef DUO_SANITIZED
   GTEST_SKIP() << "sanitizers need address space";
 #endif
   rlimit before{};
