@@ -10,7 +10,7 @@
 namespace duo {
 namespace {
 
-using test::kChoices, test::Choice, test::prepared, test::raw_setup, test::run;
+using test::kChoices, test::Choice, test::low_texture, test::prepared, test::raw_setup, test::run;
 
 void expect_same_maps(const Frame& want, const Frame& got, const std::string& who) {
   EXPECT_EQ(want.sequence, got.sequence) << who;
@@ -57,6 +57,55 @@ TEST(Engine, ManyAtOnceAreThoseOfOneAfterTheOther) {
         one->look_at(windows_of(i));
         expect_same_maps(*run(*one, scenes[static_cast<std::size_t>(i)].pair), *got, who);
         last = got;
+      }
+    }
+  }
+}
+
+// A stream that begins sharp and becomes blurred is matched as a clear one for as many pairs whoever makes how many at once,
+// and begins anew with each prepare().
+TEST(Engine, ManyAtOnceSettleWhatIsClear) {
+  constexpr int kSharp = 5, kPairs = kSharp + 40;
+  std::vector<Pair> pairs;
+  for (int i = 0; i < kPairs; ++i) pairs.push_back(low_texture(i < kSharp, static_cast<unsigned>(i)));
+  duo::Setup setup;
+  setup.size = pairs[0].left.pixels.size();
+  setup.max_disparity = 16;
+  const auto one_after_the_other = [&](const char* name, const duo::Setup& how) {
+    const auto engine = prepared(name, 1, how);
+    std::vector<Image<std::uint16_t>> found;
+    for (const Pair& pair : pairs) found.push_back(run(*engine, pair)->disparity.d_q4.clone());
+    return found;
+  };
+  const auto same = [](const Image<std::uint16_t>& a, const Image<std::uint16_t>& b) {
+    for (int y = 0; y < a.height(); ++y)
+      if (!std::equal(a.row(y), a.row(y) + a.width(), b.row(y))) return false;
+    return true;
+  };
+  const auto want = one_after_the_other("ref", setup);
+  duo::Setup forced = setup;
+  forced.parameters = {{"clear", 2}};
+  const auto clear = one_after_the_other("simd", forced);
+  forced.parameters = {{"clear", 0}};
+  const auto unclear = one_after_the_other("simd", forced);
+  for (int i = 0; i < kPairs; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const bool is_clear = i < kSharp + 29;  // the 30th blurred pair in a row is believed
+    EXPECT_FALSE(same(clear[at], unclear[at])) << i;
+    EXPECT_TRUE(same(want[at], is_clear ? clear[at] : unclear[at])) << i;
+  }
+  setup.many_at_once = true;
+  for (const int threads : {1, 3, 4}) {
+    const auto many = prepared("simd", threads, setup);
+    for (int round = 0; round < 2; ++round) {
+      ASSERT_TRUE(many->prepare(setup));
+      for (int i = 0, submitted = 0; i < kPairs; ++i) {
+        for (; submitted < std::min(kPairs, i + many->in_flight()); ++submitted)
+          many->submit(pairs[static_cast<std::size_t>(submitted)]);
+        const auto at = static_cast<std::size_t>(i);
+        if (!test::expect_same<std::uint16_t>(want[at], many->collect()->disparity.d_q4,
+                                              std::to_string(threads) + " threads, frame " + std::to_string(i)))
+          return;
       }
     }
   }

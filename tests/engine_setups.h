@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <random>
 #include <utility>
 
 #include "duoptic/engine.h"
@@ -22,6 +23,29 @@ inline std::unique_ptr<Engine> prepared(const char* name, int threads, const duo
 inline std::shared_ptr<const Frame> run(Engine& engine, const Pair& pair) {
   engine.submit(pair);
   return engine.collect();
+}
+
+/// Little, sharp texture 4 px apart in both views; or more of it, blurred.
+inline Pair low_texture(bool sharp, unsigned seed) {
+  const Size size{72, 48};
+  std::mt19937 rng(seed);
+  Image<std::uint8_t> texture({size.width + 16, size.height + 8});
+  for (int y = 0; y < texture.height(); ++y)
+    for (int x = 0; x < texture.width(); ++x)
+      texture.at(y, x) = static_cast<std::uint8_t>(100 + (sharp ? rng() % 3 : rng() % 60));
+  Pair out;
+  for (auto [picture, shift] : {std::pair{&out.left, 0}, std::pair{&out.right, 4}}) {
+    picture->pixels = Image<Rgb8>(size);
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) {
+        int sum = 0;
+        for (int j = 0; j < 4; ++j)
+          for (int i = 0; i < 4; ++i) sum += texture.at(y + (sharp ? 0 : j), x + shift + (sharp ? 0 : i));
+        const auto v = static_cast<std::uint8_t>(sum / 16);
+        picture->pixels.at(y, x) = {v, v, v};
+      }
+  }
+  return out;
 }
 
 /// What a user can choose.

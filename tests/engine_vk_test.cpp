@@ -8,13 +8,14 @@
 #include "engines/engines.h"
 #include "tests/agree_vk.h"
 #include "tests/allocations.h"
+#include "tests/engine_setups.h"
 #include "tests/watched_device.h"
 #include "vulkan/frame_on_device.h"
 
 namespace duo {
 namespace {
 
-using test::calls, test::must, test::OwnDevice, test::thread_ns, test::watch;
+using test::calls, test::low_texture, test::must, test::OwnDevice, test::thread_ns, test::watch;
 
 SyntheticPair room(int seed = 2) {
   SyntheticSetup synthetic;
@@ -110,6 +111,27 @@ TEST(VulkanEngine, KeepsPairsInFlightInOrder) {
   expect_same_frame(*run(*reference, scenes[0].pair), *first, "first, after the second was made");
   expect_same_frame(*run(*reference, scenes[1].pair), *second, "second");
   expect_same_frame(*run(*reference, scenes[2].pair), *vulkan->collect(), "third");
+}
+
+// What a stream knows of its pictures stays on the device from pair to pair, two in flight, and is forgotten by prepare().
+TEST(VulkanEngine, SettlesWhatIsClear) {
+  constexpr int kSharp = 2, kPairs = kSharp + 32;
+  std::vector<Pair> pairs;
+  for (int i = 0; i < kPairs; ++i) pairs.push_back(low_texture(i < kSharp, static_cast<unsigned>(i)));
+  duo::Setup setup;
+  setup.size = pairs[0].left.pixels.size();
+  setup.max_disparity = 16;
+  OwnDevice device;
+  const auto reference = prepared(make_ref_engine(), setup), vulkan = prepared(device.engine(), setup);
+  for (int round = 0; round < 2; ++round) {
+    for (int i = 0, submitted = 0; i < kPairs; ++i) {
+      for (; submitted < std::min(kPairs, i + 2); ++submitted) vulkan->submit(pairs[static_cast<std::size_t>(submitted)]);
+      const auto want = run(*reference, pairs[static_cast<std::size_t>(i)])->disparity.d_q4.clone();
+      if (!test::expect_same<std::uint16_t>(want, vulkan->collect()->disparity.d_q4, "pair " + std::to_string(i))) return;
+    }
+    ASSERT_TRUE(reference->prepare(setup));
+    ASSERT_TRUE(vulkan->prepare(setup));
+  }
 }
 
 // Windows belong to the pair submitted after them, also while another one is in flight.

@@ -163,7 +163,6 @@ Result<nlohmann::json> device_table(const DeviceBench& what) {
       setup.matcher = matcher;
       setup.preset = preset;
       setup.max_disparity = what.max_disparity;
-      setup.fill = true;
       setup.wants = {
           .color = maps, .depth = maps, .confidence = false, .views = maps, .disparity = maps, .on_device = on_device};
       setup.time_stages = true;

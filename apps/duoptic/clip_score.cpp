@@ -86,14 +86,17 @@ void DepthTally::add(const Frame& frame, const Rectified& rectified, const Camer
       const long row = std::lround(left.fy_px * ray_in_left.y / ray_in_left.z + left.cy_px);
       if (column < 0 || row < 0 || column >= truth.figure.width() || row >= truth.figure.height()) continue;
       const int tenth_mm = truth.z_tenth_mm.at(static_cast<int>(row), static_cast<int>(column));
-      if (truth.figure.at(static_cast<int>(row), static_cast<int>(column)) == 0 || tenth_mm == 0) continue;
+      if (tenth_mm == 0) continue;
+      const bool person = truth.figure.at(static_cast<int>(row), static_cast<int>(column)) != 0;
       const double z_in_rig_m = tenth_mm * 1e-4 / ray_in_left.z;  // the ray has z = 1 in the rig frame
       const double true_px = rectified.disparity_px(z_in_rig_m);
       if (x < true_px) continue;  // beyond the right picture's border
-      ++pixels_;
+      pixels_ += person;
       const std::uint16_t d_q4 = frame.disparity.d_q4.at(y, x);
       if (d_q4 == Disparity::kNone) continue;
       const double d_px = d_q4 / 16.0, error_px = std::abs(d_px - true_px);
+      (person ? signed_px_ : background_signed_px_).push_back(d_px - true_px);
+      if (!person) continue;
       bad_ += error_px > 1;
       errors_px_.push_back(error_px);
       depth_errors_.push_back(d_px > 0 ? std::abs(true_px / d_px - 1) : 1);
@@ -103,8 +106,9 @@ void DepthTally::add(const Frame& frame, const Rectified& rectified, const Camer
 std::optional<DepthScore> DepthTally::score() const {
   if (errors_px_.empty()) return {};
   const auto known = static_cast<std::int64_t>(errors_px_.size());
-  return DepthScore{*percent(known, pixels_), *percent(bad_, known), *percentile(errors_px_, 0.5),
-                    100 * *percentile(depth_errors_, 0.5)};
+  return DepthScore{*percent(known, pixels_),     *percent(bad_, known),
+                    *percentile(errors_px_, 0.5), 100 * *percentile(depth_errors_, 0.5),
+                    *percentile(signed_px_, 0.5), percentile(background_signed_px_, 0.5).value_or(0)};
 }
 
 }  // namespace duo::app

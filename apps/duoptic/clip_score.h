@@ -41,6 +41,8 @@ struct DepthScore {
   double bad_percent = 0;           // more than 1 px off, of those with a disparity
   double median_px = 0;             // of |d - truth|
   double median_depth_percent = 0;  // of |z - truth| / truth
+  double bias_px = 0;               // median of d - truth
+  double background_bias_px = 0;    // likewise, on all else that has a disparity; 0 without any
 };
 
 /// Collects frames; score() is of all their pixels.
@@ -52,7 +54,8 @@ class DepthTally {
 
  private:
   std::int64_t pixels_ = 0, bad_ = 0;
-  std::vector<double> errors_px_, depth_errors_;
+  std::vector<double> errors_px_, depth_errors_;          // on the person
+  std::vector<double> signed_px_, background_signed_px_;  // d - truth
 };
 
 /// The value below which `share` of the values lie: of n in order, the one at floor(share (n - 1)).

@@ -91,6 +91,18 @@ TEST(DepthScore, ByHand) {
   EXPECT_NEAR(s->bad_percent, 100.0 / 3, 1e-9);
   EXPECT_EQ(s->median_px, 0.5);
   EXPECT_NEAR(s->median_depth_percent, 100 * (1 - 5 / 5.5), 1e-9);
+  EXPECT_EQ(s->bias_px, 0.5);
+  EXPECT_EQ(s->background_bias_px, 0) << "none is seen by both";
+
+  // x = 5 of the background instead, and too far by 1/4 px.
+  truth.figure.at(0, 5) = 0;
+  frame.disparity.d_q4.at(0, 5) = 76;
+  DepthTally apart;
+  apart.add(frame, rectified, left, truth);
+  EXPECT_EQ(apart.score()->bias_px, 0.5);
+  EXPECT_EQ(apart.score()->background_bias_px, -0.25);
+  truth.figure.at(0, 5) = 255;
+  frame.disparity.d_q4.at(0, 5) = 80;
 
   frame.disparity.d_q4.at(0, 6) = Disparity::kNone;
   tally.add(frame, rectified, left, truth);

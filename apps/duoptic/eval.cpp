@@ -261,19 +261,28 @@ Result<Exit> run_perturbed(const Options& options) {
 
 Result<Exit> run(const Options& options) {
   DUO_TRY_ASSIGN(const auto folders, find_scenes({options.folders.begin(), options.folders.end()}));
+  // Ours as asked for; then, where that leaves holes, filled by ourselves; then the peers.
+  std::vector<EngineOptions> ours = {options.engine};
+  if (!options.engine.fill) ours.push_back(options.engine), ours.back().fill = true;
   std::vector<MethodScores> methods = {{fmt::format("duoptic {} {}", options.engine.matcher, options.engine.preset), {}}};
+  if (ours.size() > 1) methods.push_back({methods[0].method + ", --fill", {}});
+  const std::size_t first_peer = methods.size();
   if (!options.no_peers)
     for (const Peer& peer : accuracy_peers()) methods.push_back({fmt::format("OpenCV {}", peer.name), {}});
   for (const fs::path& folder : folders) {
     DUO_TRY_ASSIGN(const Scene scene, load_scene(folder));
-    double ms = 0;
-    DUO_TRY_ASSIGN(const Image<float> d_px, match(scene, options.engine, options.keep_rows, ms));
-    methods[0].scenes.push_back({scene.name, score(d_px, scene), ms});
-    for (std::size_t i = 1; i < methods.size(); ++i)
-      methods[i].scenes.push_back(score_peer(accuracy_peers()[i - 1], scene, options.engine.threads));
+    std::vector<Image<float>> d_px;
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+      double ms = 0;
+      DUO_TRY_ASSIGN(Image<float> found, match(scene, ours[i], options.keep_rows, ms));
+      methods[i].scenes.push_back({scene.name, score(found, scene), ms});
+      d_px.push_back(std::move(found));
+    }
+    for (std::size_t i = first_peer; i < methods.size(); ++i)
+      methods[i].scenes.push_back(score_peer(accuracy_peers()[i - first_peer], scene, options.engine.threads));
     if (!options.output.empty()) {
       DUO_TRY_ASSIGN(OutputSet out, OutputSet::open(options.output));
-      DUO_TRY(write_png(draw_errors(d_px, scene), out / (scene.name + "_errors.png")));
+      DUO_TRY(write_png(draw_errors(d_px[0], scene), out / (scene.name + "_errors.png")));
       DUO_TRY(out.publish());
     }
   }

@@ -178,7 +178,9 @@ nlohmann::json to_json(const ClipScore& score) {
     out["depth"] = {{"coverage_percent", d->coverage_percent},
                     {"bad_percent", d->bad_percent},
                     {"median_px", d->median_px},
-                    {"median_depth_percent", d->median_depth_percent}};
+                    {"median_depth_percent", d->median_depth_percent},
+                    {"bias_px", d->bias_px},
+                    {"background_bias_px", d->background_bias_px}};
   return out;
 }
 
@@ -198,9 +200,11 @@ void print(const ClipScore& score) {
   }
   fmt::print("{:<27} {} frames from {}, {:.1f} frames/s", "", score.frames, score.first, score.fps);
   if (score.depth)
-    fmt::print("; depth on the person: {:.1f} % covered, {:.1f} % off by more than 1 px, median {:.2f} px = {:.2f} %",
-               score.depth->coverage_percent, score.depth->bad_percent, score.depth->median_px,
-               score.depth->median_depth_percent);
+    fmt::print(
+        "; depth on the person: {:.1f} % covered, {:.1f} % off by more than 1 px, median {:.2f} px = {:.2f} %, "
+        "bias {:+.3f} px, on the background {:+.3f} px",
+        score.depth->coverage_percent, score.depth->bad_percent, score.depth->median_px, score.depth->median_depth_percent,
+        score.depth->bias_px, score.depth->background_bias_px);
   fmt::print("\n");
 }
 

@@ -90,7 +90,7 @@ void EngineOptions::add_to(CLI::App& app) {
   app.add_option("--denoise", denoise, "Before rectification; auto: gaussian for raw pictures, none for rectified ones")
       ->check(CLI::IsMember(denoise_names))
       ->capture_default_str();
-  app.add_flag("--fill", fill, "Fill holes from the background");
+  app.add_flag("--fill", fill, "Fill holes: flat walls by their plane, all else by the surface behind");
   app.parse_complete_callback([this, method] {
     if (method->count() == 0) matcher = matcher_with(preset, matcher);
     check();

@@ -55,7 +55,7 @@ Result<Prepared> prepare_setup(const Setup& setup) {
 }
 
 MatchSetup match_setup(const Prepared& prepared) {
-  return {prepared.size, prepared.setup.max_disparity, prepared.rectification.has_value()};
+  return {prepared.size, prepared.setup.max_disparity, prepared.rectification.has_value(), prepared.stream};
 }
 
 float focal_baseline_px_mm(const Rectified& geometry) {

@@ -1,6 +1,7 @@
 // What every engine settles before the first frame: checked choices, geometry, and the frame's memory.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "calib/rectification.h"
@@ -17,6 +18,7 @@ struct Prepared {
   std::optional<Rectified> geometry;
   Size size;  // of the rectified pictures
   Matchers::Choice matcher;
+  std::shared_ptr<ClearStream> stream = std::make_shared<ClearStream>();  // of all who match for this setup
 };
 
 /// Checks the setup and computes the geometry.

@@ -12,11 +12,11 @@
 #include "engines/prepared.h"
 #include "stages/depth/depth.h"
 #include "stages/fill/fill.h"
+#include "stages/fill_regions/fill_regions.h"
 #include "stages/gaussian/gaussian.h"
 #include "stages/gray/gray.h"
 #include "stages/median/median.h"
 #include "stages/rectify/rectify.h"
-#include "stages/weighted_median/weighted_median.h"
 
 namespace duo {
 namespace {
@@ -31,7 +31,7 @@ class RefEngine final : public Engine {
     frames_ = ObjectPool<Frame>(1 + kSpareFrames, [this] { return make_frame(prepared_); });
     Matchers::make(prepared_.matcher, match_setup(prepared_), matcher_);
     if (setup.fill) {
-      unsmoothed_ = Image<std::uint16_t>(prepared_.size);
+      unfilled_ = Image<std::uint16_t>(prepared_.size);
     }
     now_ = Image<std::uint8_t>(setup.size);
     next_ = Image<std::uint8_t>(setup.size);
@@ -93,12 +93,12 @@ class RefEngine final : public Engine {
     timer_.stage("rectify");
   }
 
-  /// What was filled takes the disparity of those filled or measured pixels around it that look like it.
   void fill(Frame& frame) {
     Disparity& disparity = frame.disparity;
-    ref::fill(disparity.d_q4, disparity.origin);
-    disparity.d_q4.swap(unsmoothed_);
-    ref::weighted_median({unsmoothed_, frame.left, disparity.origin}, disparity.d_q4);
+    const int max_disparity = prepared_.setup.max_disparity;
+    ref::fill_regions({frame.left, max_disparity}, disparity.d_q4, disparity.origin);
+    disparity.d_q4.swap(unfilled_);
+    ref::fill(unfilled_, max_disparity, disparity.origin, disparity.d_q4);
   }
 
   void prepare_color(const Picture& picture, const Rectification* maps, Image<Rgb8>& out) {
@@ -111,9 +111,9 @@ class RefEngine final : public Engine {
   Matchers::Ref matcher_;
   std::vector<Window> windows_;
   ObjectPool<Frame> frames_;
-  std::shared_ptr<Frame> current_;   // until it is collected
-  Image<std::uint16_t> unsmoothed_;  // disparities just filled
-  Image<std::uint8_t> now_, next_;   // one view on its way through the denoising
+  std::shared_ptr<Frame> current_;  // until it is collected
+  Image<std::uint16_t> unfilled_;
+  Image<std::uint8_t> now_, next_;  // one view on its way through the denoising
   StageTimer timer_;
 };
 

@@ -30,8 +30,9 @@ class FrameThread {
   }
   ~FrameThread() { jobs_.close(); }
 
-  void submit(const Pair& pair, const std::vector<Window>& windows, std::shared_ptr<Frame> frame) {
+  void submit(const Pair& pair, const std::vector<Window>& windows, std::uint64_t turn, std::shared_ptr<Frame> frame) {
     job_.pair = &pair;
+    job_.turn = turn;
     job_.windows = windows;
     job_.frame = std::move(frame);
     jobs_.put(job_);
@@ -46,6 +47,7 @@ class FrameThread {
   struct Job {
     const Pair* pair = nullptr;
     std::vector<Window> windows;
+    std::uint64_t turn = 0;
     std::shared_ptr<Frame> frame;
   };
 
@@ -54,7 +56,7 @@ class FrameThread {
     for (Job job;;) {
       DUO_TRY_ASSIGN(const Taken taken, jobs_.take(job));
       if (taken == Taken::kClosed) return {};
-      frames_.make(*job.pair, job.windows, *job.frame);
+      frames_.make(*job.pair, job.windows, job.turn, *job.frame);
       done_.put(job.frame);
     }
   }
@@ -101,12 +103,13 @@ class SimdEngine final : public Engine {
     DUO_CHECK(count_ < in_flight());
     std::shared_ptr<Frame> frame = frames_.lend();
     if (alone_ != nullptr) {
-      alone_->make(pair, windows_, *frame);
+      alone_->make(pair, windows_, turn_, *frame);
       frame_ = std::move(frame);
     } else {
-      thread_of(first_ + count_).submit(pair, windows_, std::move(frame));
+      thread_of(first_ + count_).submit(pair, windows_, turn_, std::move(frame));
     }
     ++count_;
+    ++turn_;
   }
 
   std::shared_ptr<const Frame> collect() override {
@@ -129,6 +132,8 @@ class SimdEngine final : public Engine {
   }
   Result<void> make_frames() {
     const int at_once = frames_at_once(prepared_.setup, threads_);
+    prepared_.stream = std::make_shared<ClearStream>();  // a new one also where the last setup comes back
+    turn_ = 0;
     try {
       for (int i = 0; at_once > 1 && i < at_once; ++i) {
         auto thread = FrameThread::start(prepared_, threads_ / at_once + (i < threads_ % at_once));
@@ -157,6 +162,7 @@ class SimdEngine final : public Engine {
   std::vector<std::unique_ptr<FrameThread>> threads_of_frames_;  // or several that take turns
   std::shared_ptr<const Frame> frame_;                           // of alone_, until it is collected
   std::vector<Window> windows_;                                  // of the next submit
+  std::uint64_t turn_ = 0;                                       // likewise, since prepare()
   int first_ = 0, count_ = 0;                                    // in flight: count_ of them, the oldest in thread first_
 };
 

@@ -17,15 +17,12 @@ namespace duo {
 
 SimdFrames::SimdFrames(const Prepared& prepared, int threads) : prepared_(prepared), pool_(threads), governor_(pool_.most()) {
   Matchers::make(pool_, prepared.matcher, match_setup(prepared), matcher_);
-  if (prepared.setup.fill) {
-    unsmoothed_ = Image<std::uint16_t>(prepared.size);
-    smooth_scratch_.emplace(prepared.size);
-  }
+  if (prepared.setup.fill) filling_.emplace(prepared.size, prepared.setup.max_disparity);
   now_ = Image<std::uint8_t>(prepared.setup.size);
   next_ = Image<std::uint8_t>(prepared.setup.size);
 }
 
-void SimdFrames::make(const Pair& pair, std::span<const Window> windows, Frame& frame) {
+void SimdFrames::make(const Pair& pair, std::span<const Window> windows, std::uint64_t turn, Frame& frame) {
   DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
   const Setup& setup = prepared_.setup;
   pool_.use(governor_.threads());
@@ -41,14 +38,13 @@ void SimdFrames::make(const Pair& pair, std::span<const Window> windows, Frame& 
   timer_.stage("color");
   prepare_view(pair.right, maps ? &maps->right : nullptr, frame.right, frame.right_inside);
 
-  const int height = prepared_.size.height;
-  const RowBand shown = RowBand::of(windows, prepared_.size);
-  const RowBand matched = setup.fill ? shown.grown(WeightedMedian::kRadius, height) : shown;
+  // What fills a hole may come from anywhere in the picture.
+  const RowBand matched = setup.fill ? RowBand{} : RowBand::of(windows, prepared_.size);
   Disparity& disparity = frame.disparity;
-  const GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside};
+  const GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside, turn};
   std::visit([&](auto& matcher) { matcher.match(gray, {disparity.d_q4, frame.confidence}, timer_, matched); }, *matcher_);
   simd::mark_measured(pool_, disparity.d_q4, disparity.origin);
-  if (setup.fill) fill(frame, shown);
+  if (filling_) filling_->fill(pool_, frame.left, disparity);
   keep_windows(windows, frame);
   timer_.stage("fill");
   if (setup.wants.depth) simd::depth(pool_, disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
@@ -78,14 +74,6 @@ void SimdFrames::prepare_view(const Picture& picture, const ResampleMap* map, Im
   else
     out.swap(now_);
   timer_.stage("rectify");
-}
-
-/// What was filled takes the disparity of those filled or measured pixels around it that look like it.
-void SimdFrames::fill(Frame& frame, RowBand rows) {
-  Disparity& disparity = frame.disparity;
-  simd::fill(pool_, disparity.d_q4, disparity.origin);
-  disparity.d_q4.swap(unsmoothed_);
-  simd::weighted_median(pool_, {unsmoothed_, frame.left, disparity.origin, rows}, *smooth_scratch_, disparity.d_q4);
 }
 
 void SimdFrames::prepare_color(const Picture& picture, const Rectification* maps, Image<Rgb8>& out) {

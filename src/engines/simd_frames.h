@@ -8,8 +8,8 @@
 #include "core/clock.h"
 #include "core/governor.h"
 #include "core/pool.h"
+#include "engines/filling.h"
 #include "engines/prepared.h"
-#include "stages/weighted_median/weighted_median.h"
 
 namespace duo {
 
@@ -24,20 +24,19 @@ class SimdFrames {
   SimdFrames& operator=(const SimdFrames&) = delete;
 
   /// `frame` comes from make_frame(). Windows: see Engine::look_at().
-  void make(const Pair& pair, std::span<const Window> windows, Frame& frame);
+  /// `turn`: which pair of the stream, from 0.
+  void make(const Pair& pair, std::span<const Window> windows, std::uint64_t turn, Frame& frame);
 
  private:
   void prepare_view(const Picture& picture, const ResampleMap* map, Image<std::uint8_t>& out, Image<std::uint8_t>& inside);
   void prepare_color(const Picture& picture, const Rectification* maps, Image<Rgb8>& out);
-  void fill(Frame& frame, RowBand rows);
 
   const Prepared& prepared_;
   Pool pool_;
   Governor governor_;
   Matchers::Simd matcher_;
-  std::optional<simd::WeightedMedianScratch> smooth_scratch_;
-  Image<std::uint16_t> unsmoothed_;  // disparities just filled
-  Image<std::uint8_t> now_, next_;   // one view on its way through the denoising
+  std::optional<Filling> filling_;
+  Image<std::uint8_t> now_, next_;  // one view on its way through the denoising
   StageTimer timer_;
 };
 

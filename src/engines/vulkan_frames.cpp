@@ -6,7 +6,8 @@
 
 #include "core/check.h"
 #include "core/clock.h"
-#include "stages/fill/fill_params.h"
+#include "stages/depth/depth.h"
+#include "stages/fill/fill.h"
 #include "vulkan/maps.h"
 
 namespace duo::vk {
@@ -31,12 +32,9 @@ Image<std::uint8_t> inside_of(const ResampleMap& map, Size raw) {
 }  // namespace
 
 Result<std::unique_ptr<Frames>> Frames::make(const std::shared_ptr<Device>& device, const Prepared& prepared) {
-  if (prepared.size.width > kFillMaxWidth)
-    return Error{ErrorCode::kUnsupported,
-                 fmt::format("rectified pictures of {} columns: kernels take at most {}", prepared.size.width, kFillMaxWidth)};
   std::unique_ptr<Frames> out(new Frames(*device, prepared));
   DUO_TRY(out->make_kernels());
-  if (prepared.setup.wants.on_device && out->rectifies()) {
+  if (prepared.setup.wants.on_device && out->rectifies() && !prepared.setup.fill) {
     out->on_device_ = std::make_shared<FrameMaps>();
     out->on_device_->device = device;
     out->on_device_->size = prepared.size;
@@ -70,10 +68,7 @@ Result<void> Frames::make_kernels() {
   };
   DUO_TRY(std::visit(make_matcher, prepared_.matcher));
   DUO_TRY_ASSIGN(fill_, Fill::make(device_));
-  if (prepared_.setup.fill) {
-    DUO_TRY_ASSIGN(weighted_median_, WeightedMedian::make(device_));
-  }
-  if (prepared_.setup.wants.depth) {
+  if (prepared_.setup.wants.depth && !prepared_.setup.fill) {
     DUO_TRY_ASSIGN(depth_, Depth::make(device_, focal_baseline_px_mm(*prepared_.geometry)));
   }
   return {};
@@ -97,7 +92,7 @@ Result<void> Frames::make_maps() {
     DUO_TRY(make(maps_, prepared_.color && rectifies()));
   if (rectifies()) DUO_TRY(make_map<std::uint8_t>(device_, "rectified right", size, right_));
   DUO_TRY(make_map<std::uint8_t>(device_, "origin", size, origin_));
-  if (prepared_.setup.fill) DUO_TRY(make_map<std::uint16_t>(device_, "unsmoothed disparity", size, unsmoothed_));
+  if (prepared_.setup.fill) filling_.emplace(size, prepared_.setup.max_disparity);
   if (wants.confidence) DUO_TRY(make_map<std::uint8_t>(device_, "confidence", size, confidence_));
   if (wants.depth) DUO_TRY(make_map<std::uint16_t>(device_, "depth", size, depth_mm_));
   return {};
@@ -119,6 +114,7 @@ Result<void> Frames::make_view(ViewMaps& view, const char* name, const ResampleM
 Result<void> Frames::make_slot(Slot& slot) {
   const Size size = prepared_.size;
   const Wants& wants = prepared_.setup.wants;
+  const bool fill = prepared_.setup.fill;
   DUO_TRY_ASSIGN(Recorder recorder, Recorder::make(device_));
   slot.recorder.emplace(std::move(recorder));
   DUO_TRY_ASSIGN(slot.timer, Timer::make(device_, kMostParts));
@@ -126,13 +122,13 @@ Result<void> Frames::make_slot(Slot& slot) {
   const auto make = [&]<class T>(T, bool wanted, const char* name, Buffer& out) -> Result<void> {
     return wanted ? make_map<T>(device_, name, size, out, Memory::kDownload) : Result<void>{};
   };
-  DUO_TRY(make(std::uint8_t{}, wants.views, "left down", slot.down.left));
+  DUO_TRY(make(std::uint8_t{}, wants.views || fill, "left down", slot.down.left));
   DUO_TRY(make(std::uint8_t{}, wants.views, "right down", slot.down.right));
-  DUO_TRY(make(std::uint16_t{}, wants.disparity, "disparity down", slot.down.d_q4));
-  DUO_TRY(make(std::uint8_t{}, wants.disparity, "origin down", slot.down.origin));
+  DUO_TRY(make(std::uint16_t{}, wants.disparity || fill, "disparity down", slot.down.d_q4));
+  DUO_TRY(make(std::uint8_t{}, wants.disparity && !fill, "origin down", slot.down.origin));
   DUO_TRY(make(std::uint8_t{}, wants.confidence, "confidence down", slot.down.confidence));
-  DUO_TRY(make(std::uint16_t{}, wants.depth, "depth down", slot.down.depth_mm));
-  return make(Rgb8{}, wants.color, "color down", slot.down.color);
+  DUO_TRY(make(std::uint16_t{}, wants.depth && !fill, "depth down", slot.down.depth_mm));
+  return make(Rgb8{}, sends_color(), "color down", slot.down.color);
 }
 
 Result<void> Frames::record(Slot& slot) {
@@ -195,16 +191,8 @@ void Frames::record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<
   Recorder& recorder = *slot.recorder;
   const Size size = prepared_.size;
   const auto d_q4 = whole<std::uint16_t>(maps_of(slot).d_q4, size);
-  const auto origin = whole<std::uint8_t>(origin_, size);
-  const auto found = prepared_.setup.fill ? whole<std::uint16_t>(unsmoothed_, size) : d_q4;
-  record_match(recorder, left, right, found);
-  if (prepared_.setup.fill) {
-    // What was filled takes the disparity of those filled or measured pixels around it that look like it.
-    fill_.record(recorder, found, origin, size);
-    weighted_median_.record(recorder, {found, left, origin}, d_q4, size);
-  } else {
-    fill_.record_measured(recorder, d_q4, origin, size);
-  }
+  record_match(recorder, left, right, d_q4);
+  fill_.record_measured(recorder, d_q4, whole<std::uint8_t>(origin_, size), size);
   recorder.stage("fill");
   if (depth_) {
     depth_->record(recorder, d_q4, whole<std::uint16_t>(depth_mm_, size), size);
@@ -263,18 +251,32 @@ Result<void> Frames::collect(int slot, Frame& frame) {
   unpack(at.down.depth_mm, frame.depth_mm);
   unpack(at.down.color, frame.color);
   frame.stages = {};
-  if (!prepared_.setup.time_stages) return {};
-  DUO_TRY_ASSIGN(const auto times, at.timer.read());
-  for (const Timer::Time& t : times) add_time(frame.stages, t.stage, static_cast<std::int64_t>(t.ns), 0);
+  if (prepared_.setup.time_stages) {
+    DUO_TRY_ASSIGN(const auto times, at.timer.read());
+    for (const Timer::Time& t : times) add_time(frame.stages, t.stage, static_cast<std::int64_t>(t.ns), 0);
+  }
+  if (filling_) fill(frame);
   return {};
+}
+
+/// And depth, which follows from what was filled.
+void Frames::fill(Frame& frame) {
+  const std::int64_t wall_before = wall_ns(), cpu_before = cpu_ns();
+  simd::mark_measured(pool_, frame.disparity.d_q4, frame.disparity.origin);
+  filling_->fill(pool_, frame.left, frame.disparity);
+  if (prepared_.setup.wants.depth)
+    simd::depth(pool_, frame.disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
+  if (prepared_.setup.time_stages) add_time(frame.stages, "fill", wall_ns() - wall_before, cpu_ns() - cpu_before);
 }
 
 Frame Frames::make_frame() const {
   Frame frame = duo::make_frame(prepared_);
   const Wants& wants = prepared_.setup.wants;
-  if (!wants.views) frame.left = {}, frame.right = {}, frame.left_inside = {}, frame.right_inside = {};
-  if (!wants.disparity) frame.disparity = {};
-  if (!wants.color) frame.color = {};
+  const bool fill = prepared_.setup.fill;  // what filling looks at stays
+  if (!wants.views) frame.right = {}, frame.left_inside = {}, frame.right_inside = {};
+  if (!wants.views && !fill) frame.left = {};
+  if (!wants.disparity && !fill) frame.disparity = {};
+  if (!sends_color()) frame.color = {};
   if (wants.views && rectifies()) {
     frame.left_inside = inside_of(prepared_.rectification->left, prepared_.setup.size);
     frame.right_inside = inside_of(prepared_.rectification->right, prepared_.setup.size);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "engines/filling.h"
 #include "engines/prepared.h"
 #include "matchers/matchers_vk.h"
 #include "stages/depth/depth_vk.h"
@@ -13,7 +14,6 @@
 #include "stages/gray/gray_vk.h"
 #include "stages/median/median_vk.h"
 #include "stages/rectify/rectify_vk.h"
-#include "stages/weighted_median/weighted_median_vk.h"
 #include "vulkan/frame_on_device.h"
 #include "vulkan/timer.h"
 
@@ -78,6 +78,12 @@ class Frames {
   void record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right);
   void record_downloads(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right);
   Rectify::Map map_of(const ViewMaps& view) const;
+  void fill(Frame& frame);
+  /// Who would look at frames on the device looks at filled ones on the CPU, and in colour.
+  bool sends_color() const {
+    const Setup& setup = prepared_.setup;
+    return setup.wants.color || (setup.wants.on_device && setup.fill);
+  }
   bool rectifies() const { return prepared_.rectification.has_value(); }
 
   Device& device_;
@@ -88,14 +94,15 @@ class Frames {
   Rectify rectify_;
   VulkanMatcher matcher_;
   Fill fill_;
-  WeightedMedian weighted_median_;
   std::optional<Depth> depth_;
   std::array<ViewMaps, 2> views_;
   Buffer right_;  // rectified
-  Buffer unsmoothed_, origin_, confidence_, depth_mm_;
+  Buffer origin_, confidence_, depth_mm_;
   FrameMaps::Slot maps_;  // of all slots, where the maps do not stay
   std::shared_ptr<FrameMaps> on_device_;
   std::vector<Slot> slots_;
+  Pool pool_{1};  // whose frames are collected: it has nothing else to do
+  std::optional<Filling> filling_;
 };
 
 }  // namespace duo::vk

@@ -11,6 +11,7 @@ target_sources(duoptic PRIVATE ${dir}/sgm.cpp ${dir}/sgm_params.cpp ${dir}/sgm_r
 duoptic_test(matchers/sgm ${dir}/sgm_test.cpp)
 if(DUO_VULKAN)
   duoptic_shader(${dir}/keep_confidence.comp)
+  duoptic_shader(${dir}/settle_clear.comp)
   target_sources(duoptic PRIVATE ${dir}/sgm_vk.cpp)
   if(DUO_TESTS)
     target_sources(matchers_vk_test PRIVATE ${dir}/sgm_vk_test.cpp)

@@ -2,15 +2,18 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "duoptic/image.h"
+#include "matchers/clear_stream.h"
 
 namespace duo {
 
 struct MatchSetup {
   Size size;
-  int max_disparity = 0;  // searches [0, max_disparity)
-  bool masked = false;    // pairs come with inside pictures
+  int max_disparity = 0;                                                  // searches [0, max_disparity)
+  bool masked = false;                                                    // pairs come with inside pictures
+  std::shared_ptr<ClearStream> stream = std::make_shared<ClearStream>();  // shared by all who match pairs of one stream
 };
 
 /// Where the maps go. Confidence, of the matchers that tell it: 1 (doubtful) .. 255 (sure) where there is a disparity, else 0.

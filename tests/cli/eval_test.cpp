@@ -31,13 +31,30 @@ double v2_mean(const nlohmann::json& report, const std::string& method, const ch
   return 0;
 }
 
+// Large walls with little texture, where the brightness of both views differs: OpenCV is printed beside ours in the same call.
+TEST(Eval, FiguresOnWalls) {
+  const std::filesystem::path walls = test::data_folder() / "middlebury_walls";
+  if (!std::filesystem::exists(walls)) GTEST_SKIP() << "skipped: no data";
+  FILE* pipe = popen((DUO_TOOL " eval middlebury --json '" + walls.string() + "'").c_str(), "r");
+  std::string out;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) out += static_cast<char>(c);
+  ASSERT_EQ(pclose(pipe), 0);
+  std::map<std::string, double> bad;
+  for (const auto& m : nlohmann::json::parse(out)["methods"]) bad[m["method"]] = m["mean"]["bad_filled_percent"][1];
+  EXPECT_LE(bad.at("duoptic sgm default, --fill"), 15.0);
+  EXPECT_LE(bad.at("duoptic sgm default"), 20.0);
+  EXPECT_GT(bad.at("OpenCV HH4 tuned"), bad.at("duoptic sgm default, --fill"));
+  EXPECT_GT(bad.at("OpenCV 3WAY tuned"), bad.at("duoptic sgm default, --fill"));
+}
+
 TEST(Eval, FiguresOnTheFourScenes) {
   const std::filesystem::path data = test::data_folder();
   if (!std::filesystem::exists(data / "middlebury" / "cones")) GTEST_SKIP() << "skipped: no data";
   const nlohmann::json fine = evaluate(data, "");
-  EXPECT_LE(v2_mean(fine, "duoptic sgm default", "bad_holes_percent"), 10.2);
+  EXPECT_LE(v2_mean(fine, "duoptic sgm default", "bad_holes_percent"), 9.8);
+  EXPECT_LE(v2_mean(fine, "duoptic sgm default, --fill", "bad_filled_percent"), 6.0);
   const nlohmann::json filled = evaluate(data, "--fill --no-peers");
-  EXPECT_LE(v2_mean(filled, "duoptic sgm default", "bad_holes_percent"), 6.3);
+  EXPECT_LE(v2_mean(filled, "duoptic sgm default", "bad_holes_percent"), 6.0);
   const nlohmann::json pyramid = evaluate(data, "--matcher pyramid --no-peers");
   EXPECT_LE(v2_mean(pyramid, "duoptic pyramid default", "bad_filled_percent"), 10.0);
   EXPECT_LE(v2_mean(pyramid, "duoptic pyramid default", "bad_holes_percent"), 17.0);

@@ -19,7 +19,7 @@ Pyramid::Pyramid(const PyramidParams& params, const MatchSetup& setup)
 void Pyramid::match(const GrayPair& raw, const Match& out, StageTimer& timer) {
   GrayPair pair = raw;
   if (params_.balance != 0) {
-    ref::balance(raw, levels_[0].max_disparity, balanced_);
+    ref::balance(raw, levels_[0].max_disparity, 0, balanced_);
     pair.right = balanced_;
     timer.stage("balance");
   }

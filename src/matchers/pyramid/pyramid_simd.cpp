@@ -28,7 +28,7 @@ Pyramid::Pyramid(Pool& pool, const PyramidParams& params, const MatchSetup& setu
 void Pyramid::match(const GrayPair& raw, const Match& out, StageTimer& timer, RowBand) {
   GrayPair pair = raw;
   if (params_.balance != 0) {
-    simd::balance(pool_, raw, levels_[0].max_disparity, balance_scratch_, balanced_);
+    simd::balance(pool_, raw, levels_[0].max_disparity, 0, balance_scratch_, balanced_);
     pair.right = balanced_;
     timer.stage("balance");
   }

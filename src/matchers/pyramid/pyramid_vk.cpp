@@ -100,7 +100,7 @@ void Pyramid::record(Recorder& recorder, const Input& raw, const MatchOutput& ou
   if (balanced_) {
     const auto& [size, max_disparity] = levels_[0].shape;
     pair.right = whole<std::uint8_t>(balanced_->right, size);
-    balanced_->balance.record(recorder, {raw.left, raw.right, raw.left_inside, raw.right_inside}, max_disparity,
+    balanced_->balance.record(recorder, {raw.left, raw.right, raw.left_inside, raw.right_inside}, max_disparity, nullptr,
                               balanced_->scratch, pair.right, size);
     recorder.stage("balance");
   }

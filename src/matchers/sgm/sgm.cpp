@@ -4,6 +4,11 @@
 
 namespace duo {
 
+bool looks_clear(const SgmParams& params, int noise_q4, int blur_q4) {
+  if (params.clear != 1) return params.clear == 2;
+  return noise_q4 == 0 && blur_q4 < kClearBlur_q4;
+}
+
 void keep_confidence(View<const std::uint16_t> d_q4, View<std::uint8_t> confidence) {
   for (int y = 0; y < d_q4.height(); ++y) {
     const std::uint16_t* d = d_q4.row(y);

@@ -21,6 +21,9 @@ struct SgmMaps {
   SgmMaps(Size size) : balanced(size), softened(size), left_winner(size), right_winner(size), fine(size) {}
 };
 
+/// Whether a pair looks clear by what was measured of it, or by what the parameters ask for.
+bool looks_clear(const SgmParams& params, int noise_q4, int blur_q4);
+
 /// Margins become confidences: at least 1 where there is a disparity, 0 elsewhere.
 void keep_confidence(View<const std::uint16_t> d_q4, View<std::uint8_t> confidence);
 
@@ -39,6 +42,7 @@ class Sgm {
  private:
   SgmParams params_;
   int max_disparity_;
+  std::shared_ptr<ClearStream> stream_;
   SgmMaps maps_;
   PlaneImages left_, right_;
 };
@@ -57,6 +61,7 @@ class Sgm {
   Pool& pool_;
   SgmParams params_;
   int max_disparity_;
+  std::shared_ptr<ClearStream> stream_;
   SgmMaps maps_;
   PlaneImages left_, right_;
   BalanceScratch balance_scratch_;

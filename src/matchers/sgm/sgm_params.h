@@ -11,6 +11,7 @@ namespace duo {
 struct SgmParams {
   int paths = 3;
   int soften = 1;
+  int clear = 1;
   // The stage's defaults are this matcher's.
   int census_truncation = SemiGlobalParams{}.census_truncation, truncation = SemiGlobalParams{}.truncation;
   int p1 = SemiGlobalParams{}.p1, p2 = SemiGlobalParams{}.p2, p2_least = SemiGlobalParams{}.p2_least;
@@ -29,6 +30,9 @@ inline constexpr Parameter<SgmParams> kSgmParameters[] = {
     {"paths", &SgmParams::paths, "", 3, 8, "directions from which costs are summed up: 3, 4, 5 or 8"},
     {"soften", &SgmParams::soften, "", 0, 1,
      "noisy pictures are smoothed before matching, by what is measured of their noise: 1 on, 0 off"},
+    {"clear", &SgmParams::clear, "", 0, 2,
+     "whole gradients, for pictures that are finely resolved and without noise: 0 never, 1 where they are measured to be, 2 "
+     "always"},
     {"census-truncation", &SgmParams::census_truncation, "", 0, 16, "most that the census adds to a pixel's cost"},
     {"truncation", &SgmParams::truncation, "", 0, 32, "most that gray and each gradient add"},
     {"p1", &SgmParams::p1, "", 0, 112, "penalty of a step of one disparity"},

@@ -4,6 +4,7 @@
 
 #include "stages/balance/balance.h"
 #include "stages/bilateral/bilateral.h"
+#include "stages/blur/blur.h"
 #include "stages/check_left_right/check_left_right.h"
 #include "stages/match_planes/match_planes.h"
 #include "stages/noise/noise.h"
@@ -14,6 +15,7 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
     : pool_(pool),
       params_(params),
       max_disparity_(setup.max_disparity),
+      stream_(setup.stream),
       maps_(setup.size),
       left_(setup.size,
             PlaneImages::kPadRight),  // as little as its stage takes: only the right view is looked up beside itself
@@ -31,14 +33,17 @@ void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBa
   const RowBand checked_rows = params_.smooth != 0 ? rows.grown(WeightedMedian::kRadius, h) : rows;
   const RowBand joined = checked_rows.grown(params_.speckle, h);
   const int plane_rows = params_.semi_global().upward ? h : joined.end;
-  simd::balance(pool_, pair, max_disparity_, balance_scratch_, maps_.balanced);
-  timer.stage("balance");
-  const int noise_q4 = params_.soften != 0 ? simd::noise_q4(pool_, pair.left, pair.right) : 0;
+  const int measured_q4 = simd::noise_q4(pool_, pair.left, pair.right), noise_q4 = params_.soften != 0 ? measured_q4 : 0;
   timer.stage("noise");
+  const bool clear = stream_->next(pair.turn, looks_clear(params_, measured_q4, simd::blur_q4(pool_, pair.left, pair.right)));
+  timer.stage("blur");
+  simd::balance(pool_, pair, max_disparity_, clear ? kClearUnbalanced : 0, balance_scratch_, maps_.balanced);
+  timer.stage("balance");
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
     if (noise_q4 > 0) simd::bilateral(pool_, gray, bilateral_range(noise_q4), maps_.softened);
     timer.stage("bilateral");
-    simd::match_planes(pool_, noise_q4 > 0 ? maps_.softened.view() : gray, inside, census_dead_zone(noise_q4), plane_rows, out);
+    simd::match_planes(pool_, noise_q4 > 0 ? maps_.softened.view() : gray, inside, census_dead_zone(noise_q4), clear,
+                       plane_rows, out);
     timer.stage("match_planes");
   };
   planes(pair.left, pair.left_inside, left_);

@@ -25,9 +25,9 @@ struct BoxScene {
   }
 };
 
-void expect_engines_agree(Size size, int max_disparity, int paths, bool masked) {
+void expect_engines_agree(Size size, int max_disparity, int paths, bool masked, int clear = 1) {
   const BoxScene scene(size);
-  const SgmParams params = *sgm_params("default", {{"paths", paths}});
+  const SgmParams params = *sgm_params("default", {{"paths", paths}, {"clear", clear}});
   Image<std::uint8_t> inside = test::constant<std::uint8_t>(size, 255);
   for (int y = 0; y < size.height; ++y) inside.at(y, 0) = 0;
   GrayPair pair{scene.left, scene.right};
@@ -74,6 +74,7 @@ TEST(Sgm, EnginesAgree) {
       if (HasFailure()) return;
     }
   expect_engines_agree({33, 17}, 70, 3, true);
+  for (const int clear : {0, 2}) expect_engines_agree({90, 30}, 20, 3, true, clear);
   // Vectors that are all used, behind one that holds nothing.
   for (const int paths : {3, 8})
     for (const int max_disparity : {16, 32, 48, 96}) expect_engines_agree({70, 12}, max_disparity, paths, false);

@@ -1,12 +1,17 @@
 #include "matchers/sgm/sgm_vk.h"
 
 #include "matchers/sgm/keep_confidence_params.h"
+#include "matchers/sgm/settle_clear_params.h"
 
 namespace duo::vk {
 namespace {
 
 constexpr std::uint32_t kKeepConfidenceCode[] = {
 #include "spirv/keep_confidence.comp.inc"
+};
+
+constexpr std::uint32_t kSettleClearCode[] = {
+#include "spirv/settle_clear.comp.inc"
 };
 
 template <class T>
@@ -18,13 +23,14 @@ Result<Buffer> make_map(const Device& device, const std::string& name, Size size
 
 }  // namespace
 
-Result<Sgm> Sgm::make(const Device& device, const SgmParams& params, const MatchSetup& setup) {
+Result<Sgm> Sgm::make(Device& device, const SgmParams& params, const MatchSetup& setup) {
   Sgm out;
   out.params_ = params;
   out.setup_ = setup;
   DUO_TRY_ASSIGN(out.maps_, make_maps(device, params, setup));
   DUO_TRY_ASSIGN(out.balance_, Balance::make(device));
   DUO_TRY_ASSIGN(out.noise_, Noise::make(device));
+  DUO_TRY_ASSIGN(out.blur_, Blur::make(device));
   DUO_TRY_ASSIGN(out.bilateral_, Bilateral::make(device));
   DUO_TRY_ASSIGN(out.match_planes_, MatchPlanes::make(device));
   DUO_TRY_ASSIGN(out.semi_global_, SemiGlobal::make(device, setup.max_disparity, params.semi_global()));
@@ -33,19 +39,24 @@ Result<Sgm> Sgm::make(const Device& device, const SgmParams& params, const Match
   DUO_TRY_ASSIGN(out.weighted_median_, WeightedMedian::make(device));
   DUO_TRY_ASSIGN(out.keep_confidence_,
                  Kernel::make(device, {"keep confidence", kKeepConfidenceCode, 2, sizeof(KeepConfidencePush)}));
+  DUO_TRY_ASSIGN(out.settle_clear_, Kernel::make(device, {"settle clear", kSettleClearCode, 3, sizeof(SettleClearPush)}));
   return out;
 }
 
-Result<Sgm::Maps> Sgm::make_maps(const Device& device, const SgmParams& params, const MatchSetup& setup) {
+Result<Sgm::Maps> Sgm::make_maps(Device& device, const SgmParams& params, const MatchSetup& setup) {
   const Size size = setup.size, planes = MatchPlanes::packed_size(size);
   Maps out;
   // First what may be too large.
   DUO_TRY_ASSIGN(out.semi_global, SemiGlobal::Scratch::make(device, size, setup.max_disparity, params.semi_global()));
   DUO_TRY_ASSIGN(out.balance, Balance::Scratch::make(device, size));
   DUO_TRY_ASSIGN(out.noise, Noise::Scratch::make(device));
+  DUO_TRY_ASSIGN(out.blur, Blur::Scratch::make(device));
   DUO_TRY_ASSIGN(out.speckle, RemoveSpeckle::Scratch::make(device, size));
   DUO_TRY_ASSIGN(out.balanced, make_map<std::uint8_t>(device, "balanced", size));
   DUO_TRY_ASSIGN(out.noise_q4, Buffer::make(device, "sgm noise", sizeof(std::uint32_t), Memory::kDevice));
+  DUO_TRY_ASSIGN(out.blur_q4, Buffer::make(device, "sgm blur", sizeof(std::uint32_t), Memory::kDevice));
+  const std::int32_t before_the_first = 0;
+  DUO_TRY_ASSIGN(out.stream, make_filled(device, "sgm stream", std::as_bytes(std::span(&before_the_first, 1))));
   DUO_TRY_ASSIGN(out.soft_left, make_map<std::uint8_t>(device, "soft left", size));
   DUO_TRY_ASSIGN(out.soft_right, make_map<std::uint8_t>(device, "soft right", size));
   DUO_TRY_ASSIGN(out.left_planes, make_map<std::uint32_t>(device, "left planes", planes));
@@ -82,22 +93,23 @@ void Sgm::record_winners(Recorder& recorder, const Input& pair, BufferView<std::
   const auto balanced = whole<std::uint8_t>(maps_.balanced);
   auto softened = balanced;
   const auto left = whole<std::uint32_t>(maps_.left_planes), right = whole<std::uint32_t>(maps_.right_planes);
-  balance_.record(recorder, {pair.left, pair.right, pair.left_inside, pair.right_inside}, setup_.max_disparity, maps_.balance,
-                  balanced, size);
-  recorder.stage("balance");
-  if (params_.soften != 0)
-    noise_.record(recorder, pair.left, pair.right, maps_.noise, maps_.noise_q4, size);
-  else
-    recorder.fill(maps_.noise_q4, 0);
+  noise_.record(recorder, pair.left, pair.right, maps_.noise, maps_.noise_q4, size);
   recorder.stage("noise");
+  blur_.record(recorder, pair.left, pair.right, maps_.blur, maps_.blur_q4, size);
+  recorder.dispatch(settle_clear_, SettleClearPush{params_.soften, params_.clear},
+                    {writes(maps_.noise_q4), reads(maps_.blur_q4), writes(maps_.stream)}, {1, 1});
+  recorder.stage("blur");
+  balance_.record(recorder, {pair.left, pair.right, pair.left_inside, pair.right_inside}, setup_.max_disparity, &maps_.stream,
+                  maps_.balance, balanced, size);
+  recorder.stage("balance");
   if (params_.soften != 0) {
     softened = whole<std::uint8_t>(maps_.soft_right);
     bilateral_.record(recorder, pair.left, maps_.noise_q4, left_of(pair), size);
     bilateral_.record(recorder, balanced, maps_.noise_q4, softened, size);
   }
   recorder.stage("bilateral");
-  match_planes_.record(recorder, left_of(pair), pair.left_inside, maps_.noise_q4, left, size);
-  match_planes_.record(recorder, softened, pair.right_inside, maps_.noise_q4, right, size);
+  match_planes_.record(recorder, left_of(pair), pair.left_inside, maps_.noise_q4, maps_.stream, left, size);
+  match_planes_.record(recorder, softened, pair.right_inside, maps_.noise_q4, maps_.stream, right, size);
   recorder.stage("match_planes");
   semi_global_.record(recorder, left, right, maps_.semi_global,
                       {whole<std::int16_t>(maps_.left_winner), whole<std::int16_t>(maps_.right_winner),

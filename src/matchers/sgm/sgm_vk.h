@@ -5,6 +5,7 @@
 #include "matchers/sgm/sgm.h"
 #include "stages/balance/balance_vk.h"
 #include "stages/bilateral/bilateral_vk.h"
+#include "stages/blur/blur_vk.h"
 #include "stages/check_left_right/check_left_right_vk.h"
 #include "stages/match_planes/match_planes_vk.h"
 #include "stages/noise/noise_vk.h"
@@ -14,26 +15,29 @@
 
 namespace duo::vk {
 
-/// Kernels and memory of the matcher for pictures of one size; must outlive the recordings that use it.
+/// Kernels and memory of the matcher for pictures of one size; must outlive the recordings that use it. All of them are of one
+/// stream, and are submitted in the order of its pairs.
 class Sgm {
  public:
   using Input = MatchInput;
   using Output = MatchOutput;
   /// Errors  more pixels times disparities than a buffer holds, the device lacks memory, or the driver refuses a kernel
-  static Result<Sgm> make(const Device& device, const SgmParams& params, const MatchSetup& setup);
+  static Result<Sgm> make(Device& device, const SgmParams& params, const MatchSetup& setup);
   /// Disparity of the left picture in 1/16 px; all pictures of the size set up.
   void record(Recorder& recorder, const Input& pair, const Output& out) const;
 
  private:
   /// The maps between the stages, and the stages' own memory.
   struct Maps {
-    Buffer balanced, noise_q4, soft_left, soft_right, left_planes, right_planes, left_winner, right_winner, fine, checked;
+    Buffer balanced, noise_q4, blur_q4, stream, soft_left, soft_right, left_planes, right_planes, left_winner, right_winner,
+        fine, checked;
     Balance::Scratch balance;
     Noise::Scratch noise;
+    Blur::Scratch blur;
     SemiGlobal::Scratch semi_global;
     RemoveSpeckle::Scratch speckle;
   };
-  static Result<Maps> make_maps(const Device& device, const SgmParams& params, const MatchSetup& setup);
+  static Result<Maps> make_maps(Device& device, const SgmParams& params, const MatchSetup& setup);
   void record_winners(Recorder& recorder, const Input& pair, BufferView<std::uint8_t> margin) const;
   /// The left picture as it is matched.
   BufferView<std::uint8_t> left_of(const Input& pair) const {
@@ -49,13 +53,14 @@ class Sgm {
   Maps maps_;
   Balance balance_;
   Noise noise_;
+  Blur blur_;
   Bilateral bilateral_;
   MatchPlanes match_planes_;
   SemiGlobal semi_global_;
   CheckLeftRight check_left_right_;
   RemoveSpeckle remove_speckle_;
   WeightedMedian weighted_median_;
-  Kernel keep_confidence_;
+  Kernel keep_confidence_, settle_clear_;
 };
 
 }  // namespace duo::vk

@@ -78,6 +78,13 @@ TEST(SgmVk, AgreesUnsmoothed) {
   });
 }
 
+TEST(SgmVk, AgreesOnClearPictures) {
+  test::each_device([](vk::Device& device, const std::string& where) {
+    for (const int clear : {0, 2})
+      expect_sgm_agrees(device, *sgm_params("default", {{"clear", clear}}), {{61, 24}, 16, true}, true, where);
+  });
+}
+
 // A frame's times read alike whichever engine took them.
 TEST(SgmVk, TimesTheReferencesStages) {
   const Size size{20, 9};

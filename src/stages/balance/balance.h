@@ -21,10 +21,11 @@ namespace duo {
 /// kBalanceAlike and each is the other's nearest, the smallest d of equals. Only cells whose census lies inside the picture and
 /// the raw one take part, and pairs count of which neither is darker than kBalanceDark or brighter than kBalanceBright, where
 /// cameras cut off. With fewer than kBalanceFewest such pairs dst = right; where either side of them is flat they are only
-/// shifted.
+/// shifted. Where no value of 0 .. 255 would change by more than `unbalanced`, dst = right: the balance itself may be wrong by
+/// as much, and its rounding takes small gradients away.
 ///
 /// Shape    pair H x W, dst the same; cells H / 8 x W / 8, whole ones
-/// Units    max_disparity px, from 1 on
+/// Units    max_disparity px, from 1 on; unbalanced gray levels, 0: every change is made
 /// Border   two cells along each edge have no census
 /// Threads  rows of cells are independent, then those of the picture
 /// Exact    ref, simd and vk agree bit for bit: integer sums, then one table of 256 values in integers. Deviations in 1/2^24,
@@ -33,11 +34,12 @@ namespace duo {
 ///          radiometric differences", 2009, solved from the two first moments. Moments of whole pictures mislead where one view
 ///          sees what the other does not: a person near the cameras, a lens whose correction leaves less of one picture
 namespace ref {
-void balance(const GrayPair& pair, int max_disparity, View<std::uint8_t> dst);
+void balance(const GrayPair& pair, int max_disparity, int unbalanced, View<std::uint8_t> dst);
 }
 class BalanceScratch;
 namespace simd {
-void balance(Pool& pool, const GrayPair& pair, int max_disparity, BalanceScratch& scratch, View<std::uint8_t> dst);
+void balance(Pool& pool, const GrayPair& pair, int max_disparity, int unbalanced, BalanceScratch& scratch,
+             View<std::uint8_t> dst);
 }
 
 /// Both views in cells, and how much each one's nearest in the other view differs and how far away it is.
@@ -79,6 +81,6 @@ inline int most_cells_apart(int max_disparity) {
 }
 
 /// What each value of the right picture becomes.
-std::array<std::uint8_t, 256> balance_table(const BrightnessPair& sums);
+std::array<std::uint8_t, 256> balance_table(const BrightnessPair& sums, int unbalanced);
 
 }  // namespace duo

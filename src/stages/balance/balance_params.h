@@ -41,6 +41,7 @@ struct BalanceSumsPush {
 
 struct BalanceTablePush {
   int down;
+  int looks;  // 0 or 1: whether the pictures are clear is known
 };
 
 struct BalancePush {

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
+#include <numeric>
 #include <vector>
 
 #include "core/check.h"
@@ -35,7 +37,7 @@ std::int64_t mean_q16(const BrightnessSums& s) { return ((s.sum << 16) + s.count
 
 }  // namespace
 
-std::array<std::uint8_t, 256> balance_table(const BrightnessPair& sums) {
+std::array<std::uint8_t, 256> balance_table(const BrightnessPair& sums, int unbalanced) {
   const BrightnessSums &left = sums.left, &right = sums.right;
   std::int64_t gain_q16 = 1 << 16, offset_q16 = 0;
   if (left.count >= kBalanceFewest) {
@@ -48,6 +50,9 @@ std::array<std::uint8_t, 256> balance_table(const BrightnessPair& sums) {
   for (int v = 0; v < 256; ++v)
     table[static_cast<std::size_t>(v)] =
         static_cast<std::uint8_t>(std::clamp<std::int64_t>((gain_q16 * v + offset_q16 + (1 << 15)) >> 16, 0, 255));
+  int most = 0;
+  for (int v = 0; v < 256; ++v) most = std::max(most, std::abs(table[static_cast<std::size_t>(v)] - v));
+  if (most <= unbalanced) std::iota(table.begin(), table.end(), std::uint8_t{0});
   return table;
 }
 
@@ -121,7 +126,7 @@ int nearest(const std::vector<Cell>& row, int x, const std::vector<Cell>& other,
 
 }  // namespace
 
-void balance(const GrayPair& pair, int max_disparity, View<std::uint8_t> dst) {
+void balance(const GrayPair& pair, int max_disparity, int unbalanced, View<std::uint8_t> dst) {
   DUO_CHECK(pair.right.size() == dst.size() && max_disparity >= 1);
   const Cells left = cells_of(pair.left, pair.left_inside), right = cells_of(pair.right, pair.right_inside);
   const int most = most_cells_apart(max_disparity);
@@ -132,7 +137,7 @@ void balance(const GrayPair& pair, int max_disparity, View<std::uint8_t> dst) {
       if (there < 0 || nearest(right[row], there, left[row], 1, most) != x) continue;
       sums.add(left[row][static_cast<std::size_t>(x)].mean, right[row][static_cast<std::size_t>(there)].mean);
     }
-  const auto table = balance_table(sums);
+  const auto table = balance_table(sums, unbalanced);
   for (int y = 0; y < dst.height(); ++y)
     for (int x = 0; x < dst.width(); ++x) dst.at(y, x) = table[pair.right.at(y, x)];
 }

@@ -181,7 +181,8 @@ void add_pairs(int row, int max_disparity, BalanceScratch& scratch, BrightnessPa
 }  // namespace
 
 // The order in which parts are added does not change integer sums.
-void balance(Pool& pool, const GrayPair& pair, int max_disparity, BalanceScratch& scratch, View<std::uint8_t> dst) {
+void balance(Pool& pool, const GrayPair& pair, int max_disparity, int unbalanced, BalanceScratch& scratch,
+             View<std::uint8_t> dst) {
   DUO_CHECK(pair.right.size() == dst.size() && max_disparity >= 1);
   const Size cells = scratch.cells;
   DUO_CHECK(cells.empty() || cells == (Size{dst.width() / kBalanceCell, dst.height() / kBalanceCell}));
@@ -203,7 +204,7 @@ void balance(Pool& pool, const GrayPair& pair, int max_disparity, BalanceScratch
     const std::lock_guard lock(mutex);
     all.add(sums);
   });
-  alignas(16) const auto table = balance_table(all);
+  alignas(16) const auto table = balance_table(all, unbalanced);
   pool.rows(dst.height(), [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
       const std::uint8_t* src = pair.right.row(y);

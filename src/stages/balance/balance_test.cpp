@@ -24,17 +24,28 @@ int pattern(int y, int x) {
 
 Image<std::uint8_t> balanced(const GrayPair& pair, int max_disparity) {
   Image<std::uint8_t> dst(pair.size());
-  ref::balance(pair, max_disparity, dst);
+  ref::balance(pair, max_disparity, 0, dst);
   return dst;
 }
 
 // By hand: left 10 and 30 have mean 20, right 20 and 60 have mean 40 and twice the spread: gain 1/2, offset 0.
 TEST(Balance, HandWorked) {
-  EXPECT_EQ(balance_table({})[7], 7) << "no pairs: nothing changes";
+  EXPECT_EQ(balance_table({}, 0)[7], 7) << "no pairs: nothing changes";
   BrightnessPair sums;
   for (int i = 0; i < kBalanceFewest; ++i) sums.left.add(i % 2 == 0 ? 10 : 30), sums.right.add(i % 2 == 0 ? 20 : 60);
-  const auto table = balance_table(sums);
+  const auto table = balance_table(sums, 0);
   for (int v = 0; v < 256; v += 2) EXPECT_EQ(table[static_cast<std::size_t>(v)], v / 2);
+}
+
+// By hand: means of 100 and 108 shift by 8 levels and no more: left alone where that much is; with 109 they are not.
+TEST(Balance, LittleIsLeftAlone) {
+  for (const int by : {8, 9}) {
+    BrightnessPair sums;
+    for (int i = 0; i < kBalanceFewest; ++i) sums.left.add(100 + by), sums.right.add(100);
+    EXPECT_EQ(balance_table(sums, 7)[100], 100 + by);
+    EXPECT_EQ(balance_table(sums, 8)[100], by == 8 ? 100 : 109);
+    EXPECT_EQ(balance_table(sums, 0)[100], 100 + by);
+  }
 }
 
 // The right view is 2 cells to the right of the left one and half as bright. Moments of the whole pictures would be drawn
@@ -92,7 +103,7 @@ TEST(Balance, NothingInsideChangesNothing) {
 TEST(Balance, LargeGainIsCut) {
   BrightnessPair sums;
   for (int i = 0; i < 256; ++i) sums.left.add(i), sums.right.add(100 + i % 2);
-  const auto table = balance_table(sums);
+  const auto table = balance_table(sums, 0);
   EXPECT_EQ(table[99], 0);
   EXPECT_EQ(table[100], 54);
   EXPECT_EQ(table[101], 201);
@@ -103,9 +114,9 @@ TEST(Balance, LargeGainIsCut) {
 TEST(Balance, SumsAtTheBounds) {
   constexpr std::int64_t kMost = 1 << 23;
   const BrightnessSums half{kMost, kMost / 2 * 255, kMost / 2 * 255 * 255}, one{kMost, 1, 1};
-  EXPECT_EQ(balance_table({half, one})[0], 128);  // 127.5, as the mean of the right one rounds to 0
-  EXPECT_EQ(balance_table({half, one})[1], 255);
-  EXPECT_EQ(balance_table({one, half})[255], 0);
+  EXPECT_EQ(balance_table({half, one}, 0)[0], 128);  // 127.5, as the mean of the right one rounds to 0
+  EXPECT_EQ(balance_table({half, one}, 0)[1], 255);
+  EXPECT_EQ(balance_table({one, half}, 0)[255], 0);
 }
 
 // Random pictures have no cells in common: here all but the borders' see the same, 16 px apart, and the balance does something.
@@ -123,7 +134,7 @@ TEST(Balance, SimdAgreesWhereCellsFindEachOther) {
       const auto want = balanced(pair, 40);
       ASSERT_NE(want.at(24, 24), right.at(24, 24));
       test::each_target([&](const std::string& target) {
-        simd::balance(two, pair, 40, scratch, got);
+        simd::balance(two, pair, 40, 0, scratch, got);
         test::expect_same<std::uint8_t>(want, got, "balance of cells " + target);
       });
     }
@@ -148,9 +159,10 @@ TEST(Balance, SimdAgrees) {
         GrayPair pair{left.view, right.view};
         if (masked) pair.left_inside = pair.right_inside = inside.view;
         for (const int max_disparity : {1, 64, 256}) {
-          ref::balance(pair, max_disparity, want.view);
+          const int unbalanced = max_disparity == 64 ? 255 : 0;
+          ref::balance(pair, max_disparity, unbalanced, want.view);
           test::each_target([&](const std::string& target) {
-            simd::balance(two, pair, max_disparity, scratch, got.view);
+            simd::balance(two, pair, max_disparity, unbalanced, scratch, got.view);
             test::expect_same<std::uint8_t>(want.view, got.view, "balance " + target);
           });
         }

@@ -48,12 +48,12 @@ Result<Balance> Balance::make(const Device& device) {
   DUO_TRY_ASSIGN(out.cells_, Kernel::make(device, {"balance cells", kBalanceCellsCode, 5, sizeof(BalanceCellsPush)}));
   DUO_TRY_ASSIGN(out.census_, Kernel::make(device, {"balance census", kBalanceCensusCode, 2, sizeof(BalanceCensusPush)}));
   DUO_TRY_ASSIGN(out.sums_, Kernel::make(device, {"balance sums", kBalanceSumsCode, 3, sizeof(BalanceSumsPush)}));
-  DUO_TRY_ASSIGN(out.table_, Kernel::make(device, {"balance table", kBalanceTableCode, 2, sizeof(BalanceTablePush)}));
+  DUO_TRY_ASSIGN(out.table_, Kernel::make(device, {"balance table", kBalanceTableCode, 3, sizeof(BalanceTablePush)}));
   DUO_TRY_ASSIGN(out.look_up_, Kernel::make(device, {"balance", kBalanceCode, 3, sizeof(BalancePush)}));
   return out;
 }
 
-void Balance::record(Recorder& recorder, const Input& pair, int max_disparity, const Scratch& scratch,
+void Balance::record(Recorder& recorder, const Input& pair, int max_disparity, const Buffer* clear, const Scratch& scratch,
                      BufferView<std::uint8_t> dst, Size size) const {
   const bool masked = !pair.left_inside.absent();
   DUO_CHECK(scratch.size_ == size && pair.left.holds(size) && pair.right.holds(size) && dst.holds(size));
@@ -75,7 +75,8 @@ void Balance::record(Recorder& recorder, const Input& pair, int max_disparity, c
     recorder.dispatch(sums_, BalanceSumsPush{across, down, most_cells_apart(max_disparity)},
                       {reads(scratch.cells_), reads(scratch.census_), writes(scratch.rows_)}, {down, 1});
   }
-  recorder.dispatch(table_, BalanceTablePush{across > 0 ? down : 0}, {reads(scratch.rows_), writes(scratch.table_)}, {1, 1});
+  recorder.dispatch(table_, BalanceTablePush{across > 0 ? down : 0, clear != nullptr},
+                    {reads(scratch.rows_), writes(scratch.table_), reads(clear != nullptr ? *clear : scratch.rows_)}, {1, 1});
   recorder.dispatch(look_up_, BalancePush{pair.right.plane, dst.plane, size.width, size.height},
                     {reads(pair.right), reads(scratch.table_), writes(dst)}, groups_for(size));
 }

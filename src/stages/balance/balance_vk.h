@@ -24,8 +24,9 @@ class Balance {
     Buffer cells_, census_, rows_, table_;
   };
   static Result<Balance> make(const Device& device);
-  void record(Recorder& recorder, const Input& pair, int max_disparity, const Scratch& scratch, BufferView<std::uint8_t> dst,
-              Size size) const;
+  /// `clear`: null, or one word: where it is above 0 `unbalanced` is kClearUnbalanced, else 0.
+  void record(Recorder& recorder, const Input& pair, int max_disparity, const Buffer* clear, const Scratch& scratch,
+              BufferView<std::uint8_t> dst, Size size) const;
 
  private:
   Kernel cells_, census_, sums_, table_, look_up_;

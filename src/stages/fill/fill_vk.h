@@ -5,19 +5,14 @@
 
 namespace duo::vk {
 
-/// Filling on a device; the contract is in fill.h.
+/// Marks what was measured on a device; the contract is in fill.h. Filling itself is left to the CPU.
 class Fill {
  public:
   static Result<Fill> make(const Device& device);
   /// mark_measured().
   void record_measured(Recorder& recorder, BufferView<std::uint16_t> d_q4, BufferView<std::uint8_t> origin, Size size) const;
-  /// mark_measured() and fill() in one pass over the rows.
-  void record(Recorder& recorder, BufferView<std::uint16_t> d_q4, BufferView<std::uint8_t> origin, Size size) const;
 
  private:
-  void record_with(Recorder& recorder, BufferView<std::uint16_t> d_q4, BufferView<std::uint8_t> origin, Size size,
-                   bool fills) const;
-
   Kernel kernel_;
 };
 

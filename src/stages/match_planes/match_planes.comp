@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_8bit_storage : require
+#include "stages/types/clear.h"
 #include "stages/types/noise.h"
 #include "stages/match_planes/match_planes_params.h"
 
@@ -10,7 +11,8 @@ layout(local_size_x = kGroupWidth, local_size_y = kGroupHeight) in;
 layout(std430, binding = 0) readonly buffer Gray { uint8_t gray[]; };
 layout(std430, binding = 1) readonly buffer Inside { uint8_t inside[]; };
 layout(std430, binding = 2) readonly buffer Noise { uint noise_q4; };
-layout(std430, binding = 3) writeonly buffer Planes { uint planes[]; };
+layout(std430, binding = 3) readonly buffer Clear { int known; };  // above 0: clear pictures
+layout(std430, binding = 4) writeonly buffer Planes { uint planes[]; };
 layout(push_constant) uniform Push { MatchPlanesPush p; };
 
 const ivec2 kCensus[16] = {ivec2(-2, -2), ivec2(0, -2), ivec2(2, -2), ivec2(-1, -1), ivec2(1, -1), ivec2(-3, 0),
@@ -27,7 +29,7 @@ shared uint values[kInnerHeight * kInnerWidth];  // as word 0
 ivec2 clamped(ivec2 at) { return clamp(at, ivec2(0), ivec2(p.width, p.height) - 1); }
 int index(Plane plane, ivec2 at) { return plane.offset + at.y * plane.stride + at.x; }
 
-uint gradient(int sum) { return uint(clamp(sum >> 2, -63, 63) + 128); }
+uint gradient(int sum) { return uint((known > 0 ? clamp(sum, -127, 127) : clamp(sum >> 2, -63, 63)) + 128); }
 
 // The values of the pixel in the middle of a tile's 3x3.
 uint values_at(int i) {
@@ -75,8 +77,11 @@ void main() {
   for (int c = 0; c < 3; ++c) {
     const uint v = channel(values[i], c);
     const uvec4 half_way = (v + uvec4(channel(left, c), channel(right, c), channel(up, c), channel(down, c)) + 1) >> 1;
-    low |= min(min(min(half_way.x, half_way.y), min(half_way.z, half_way.w)), v) << 8 * c;
-    high |= max(max(max(half_way.x, half_way.y), max(half_way.z, half_way.w)), v) << 8 * c;
+    const int wider = c == 0 && known > 0 ? kClearGrayDeadZone : 0;
+    const int least = int(min(min(min(half_way.x, half_way.y), min(half_way.z, half_way.w)), v)) - wider;
+    const int most = int(max(max(max(half_way.x, half_way.y), max(half_way.z, half_way.w)), v)) + wider;
+    low |= uint(max(least, 0)) << 8 * c;
+    high |= uint(min(most, 255)) << 8 * c;
   }
   const int out_at = index(p.planes, at), next = p.planes.stride * p.height;
   planes[out_at] = (values[i] & 0xFFFFFF) | (outside & 0xFF000000);

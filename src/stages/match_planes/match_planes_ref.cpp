@@ -11,14 +11,14 @@ int at(const Pixels& src, int y, int x) {
   return src.at(std::clamp(y, 0, src.height() - 1), std::clamp(x, 0, src.width() - 1));
 }
 
-int sobel(View<const std::uint8_t> gray, int y, int x, bool along_x) {
+int sobel(View<const std::uint8_t> gray, int y, int x, bool along_x, bool whole) {
   int sum = 0;
   for (int i = -1; i <= 1; ++i) {
     const int weight = i == 0 ? 2 : 1;
     sum += along_x ? weight * (at(gray, y + i, x + 1) - at(gray, y + i, x - 1))
                    : weight * (at(gray, y + 1, x + i) - at(gray, y - 1, x + i));
   }
-  return std::clamp(sum >> 2, -63, 63) + 128;
+  return (whole ? std::clamp(sum, -127, 127) : std::clamp(sum >> 2, -63, 63)) + 128;
 }
 
 void census(View<const std::uint8_t> gray, int y, int x, int dead_zone, PlaneImages& out) {
@@ -30,15 +30,15 @@ void census(View<const std::uint8_t> gray, int y, int x, int dead_zone, PlaneIma
   }
 }
 
-void interval(View<const std::uint8_t> value, int y, int x, std::uint8_t& low, std::uint8_t& high) {
+void interval(View<const std::uint8_t> value, int y, int x, int wider, std::uint8_t& low, std::uint8_t& high) {
   const int v = value.at(y, x);
   int lo = v, hi = v;
   for (const int neighbour : {at(value, y, x - 1), at(value, y, x + 1), at(value, y - 1, x), at(value, y + 1, x)}) {
     lo = std::min(lo, (v + neighbour + 1) >> 1);
     hi = std::max(hi, (v + neighbour + 1) >> 1);
   }
-  low = static_cast<std::uint8_t>(lo);
-  high = static_cast<std::uint8_t>(hi);
+  low = static_cast<std::uint8_t>(std::max(lo - wider, 0));
+  high = static_cast<std::uint8_t>(std::min(hi + wider, 255));
 }
 
 bool all_inside(View<const std::uint8_t> inside, int y, int x) {
@@ -50,21 +50,22 @@ bool all_inside(View<const std::uint8_t> inside, int y, int x) {
 
 }  // namespace
 
-void match_planes(View<const std::uint8_t> gray, View<const std::uint8_t> inside, int dead_zone, PlaneImages& out) {
+void match_planes(View<const std::uint8_t> gray, View<const std::uint8_t> inside, int dead_zone, bool clear, PlaneImages& out) {
   DUO_CHECK(gray.size() == out.size && (inside.empty() || inside.size() == out.size));
   const int w = gray.width(), h = gray.height(), pad = out.pad;
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       census(gray, y, x, dead_zone, out);
       out.value[0].at(y, pad + x) = gray.at(y, x);
-      out.value[1].at(y, pad + x) = static_cast<std::uint8_t>(sobel(gray, y, x, true));
-      out.value[2].at(y, pad + x) = static_cast<std::uint8_t>(sobel(gray, y, x, false));
+      out.value[1].at(y, pad + x) = static_cast<std::uint8_t>(sobel(gray, y, x, true, clear));
+      out.value[2].at(y, pad + x) = static_cast<std::uint8_t>(sobel(gray, y, x, false, clear));
       out.outside.at(y, pad + x) = inside.empty() || all_inside(inside, y, x) ? 0 : 255;
     }
   for (std::size_t c = 0; c < MatchPlanes::kChannels; ++c)
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x)
-        interval(out.value[c].crop(0, pad, out.size), y, x, out.low[c].at(y, pad + x), out.high[c].at(y, pad + x));
+        interval(out.value[c].crop(0, pad, out.size), y, x, clear && c == 0 ? kClearGrayDeadZone : 0, out.low[c].at(y, pad + x),
+                 out.high[c].at(y, pad + x));
   for (int y = 0; y < h; ++y) {
     for (auto& plane : out.census) out.continue_row(plane, y);
     for (auto* planes : {&out.value, &out.low, &out.high})

@@ -35,13 +35,15 @@ void census_row(const std::uint8_t* const* rows, int w, int dead_zone, std::uint
   }
 }
 
-void sobel_row(const std::uint8_t* up, const std::uint8_t* mid, const std::uint8_t* down, int w, std::uint8_t* out_x,
-               std::uint8_t* out_y) {
+void sobel_row(const std::uint8_t* up, const std::uint8_t* mid, const std::uint8_t* down, int w, bool whole,
+               std::uint8_t* out_x, std::uint8_t* out_y) {
   const hn::CappedTag<std::int16_t, PlaneImages::kPadRight / 2> d16;
   const hn::Rebind<std::uint8_t, decltype(d16)> d8;
   const auto load = [&](const std::uint8_t* p) HWY_ATTR { return hn::PromoteTo(d16, hn::LoadU(d8, p)); };
+  const int shift = whole ? 0 : 2;
+  const auto most = hn::Set(d16, whole ? 127 : 63), least = hn::Neg(most);
   const auto store = [&](auto sum, std::uint8_t* p) HWY_ATTR {
-    const auto clipped = hn::Min(hn::Max(hn::ShiftRight<2>(sum), hn::Set(d16, -63)), hn::Set(d16, 63));
+    const auto clipped = hn::Min(hn::Max(hn::ShiftRightSame(sum, shift), least), most);
     hn::StoreU(hn::DemoteTo(d8, hn::Add(clipped, hn::Set(d16, 128))), d8, p);
   };
   for (int x = 0; x < w; x += static_cast<int>(hn::Lanes(d16))) {
@@ -52,9 +54,10 @@ void sobel_row(const std::uint8_t* up, const std::uint8_t* mid, const std::uint8
   }
 }
 
-void interval_row(const std::uint8_t* up, const std::uint8_t* mid, const std::uint8_t* down, int w, std::uint8_t* low,
-                  std::uint8_t* high) {
+void interval_row(const std::uint8_t* up, const std::uint8_t* mid, const std::uint8_t* down, int w, int wider,
+                  std::uint8_t* low, std::uint8_t* high) {
   const hn::CappedTag<std::uint8_t, PlaneImages::kPadRight> d;
+  const auto more = hn::Set(d, static_cast<std::uint8_t>(wider));
   for (int x = 0; x < w; x += static_cast<int>(hn::Lanes(d))) {
     const auto v = hn::LoadU(d, mid + x);
     auto lo = v, hi = v;
@@ -63,8 +66,8 @@ void interval_row(const std::uint8_t* up, const std::uint8_t* mid, const std::ui
       lo = hn::Min(lo, half);
       hi = hn::Max(hi, half);
     }
-    hn::StoreU(lo, d, low + x);
-    hn::StoreU(hi, d, high + x);
+    hn::StoreU(hn::SaturatedSub(lo, more), d, low + x);
+    hn::StoreU(hn::SaturatedAdd(hi, more), d, high + x);
   }
 }
 
@@ -92,8 +95,8 @@ void outside_row(View<const std::uint8_t> inside, int y, std::uint8_t* columns, 
 
 }  // namespace
 
-void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uint8_t> inside, int dead_zone, int rows_wanted,
-                  PlaneImages& out) {
+void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uint8_t> inside, int dead_zone, bool clear,
+                  int rows_wanted, PlaneImages& out) {
   DUO_CHECK(gray.size() == out.size && (inside.empty() || inside.size() == out.size) && out.pad >= PlaneImages::kPadRight);
   const int w = gray.width(), h = gray.height(), pad = out.pad;
   const auto first = [&](int more) { return std::min(rows_wanted + more, h); };
@@ -114,7 +117,7 @@ void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uin
       const std::uint8_t* rows[5];
       for (int i = 0; i < 5; ++i) rows[i] = row(out.value[0], y + i - 2);
       HWY_DYNAMIC_DISPATCH(census_row)(rows, w, dead_zone, row(out.census[0], y), row(out.census[1], y));
-      HWY_DYNAMIC_DISPATCH(sobel_row)(rows[1], rows[2], rows[3], w, row(out.value[1], y), row(out.value[2], y));
+      HWY_DYNAMIC_DISPATCH(sobel_row)(rows[1], rows[2], rows[3], w, clear, row(out.value[1], y), row(out.value[2], y));
       for (const View<std::uint8_t> plane : {out.census[0], out.census[1], out.value[1], out.value[2]})
         out.continue_row(plane, y);
     }
@@ -123,7 +126,8 @@ void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uin
     for (int y = begin; y < end; ++y)
       for (std::size_t c = 0; c < MatchPlanes::kChannels; ++c) {
         HWY_DYNAMIC_DISPATCH(interval_row)
-        (row(out.value[c], y - 1), row(out.value[c], y), row(out.value[c], y + 1), w, row(out.low[c], y), row(out.high[c], y));
+        (row(out.value[c], y - 1), row(out.value[c], y), row(out.value[c], y + 1), w, clear && c == 0 ? kClearGrayDeadZone : 0,
+         row(out.low[c], y), row(out.high[c], y));
         out.continue_row(out.low[c], y);
         out.continue_row(out.high[c], y);
       }

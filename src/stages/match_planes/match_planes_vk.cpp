@@ -15,17 +15,18 @@ Size MatchPlanes::packed_size(Size size) { return {size.width, kMatchPlanes * si
 
 Result<MatchPlanes> MatchPlanes::make(const Device& device) {
   MatchPlanes out;
-  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"match planes", kMatchPlanesCode, 4, sizeof(MatchPlanesPush)}));
+  DUO_TRY_ASSIGN(out.kernel_, Kernel::make(device, {"match planes", kMatchPlanesCode, 5, sizeof(MatchPlanesPush)}));
   return out;
 }
 
 void MatchPlanes::record(Recorder& recorder, BufferView<std::uint8_t> gray, BufferView<std::uint8_t> inside,
-                         const Buffer& noise_q4, BufferView<std::uint32_t> planes, Size size) const {
+                         const Buffer& noise_q4, const Buffer& clear, BufferView<std::uint32_t> planes, Size size) const {
   const bool masked = !inside.absent();
   DUO_CHECK(gray.holds(size) && planes.holds(packed_size(size)) && (!masked || inside.holds(size)));
   const MatchPlanesPush push{gray.plane, inside.plane, planes.plane, size.width, size.height, masked};
   // Every binding needs a buffer; the kernel does not look at the one that stands in for an absent one.
-  recorder.dispatch(kernel_, push, {reads(gray), masked ? reads(inside) : reads(gray), reads(noise_q4), writes(planes)},
+  recorder.dispatch(kernel_, push,
+                    {reads(gray), masked ? reads(inside) : reads(gray), reads(noise_q4), reads(clear), writes(planes)},
                     groups_for(size));
 }
 

@@ -11,10 +11,10 @@ class MatchPlanes {
   /// The picture that holds a view's planes, packed as match_planes_params.h says.
   static Size packed_size(Size size);
   static Result<MatchPlanes> make(const Device& device);
-  /// `inside` may be absent = all inside; `noise_q4`: one word, from which the dead zone follows; `planes` is of
-  /// packed_size(size).
+  /// `inside` may be absent = all inside; `noise_q4`: one word, from which the dead zone follows; `clear`: one word,
+  /// above 0 for clear pictures; `planes` is of packed_size(size).
   void record(Recorder& recorder, BufferView<std::uint8_t> gray, BufferView<std::uint8_t> inside, const Buffer& noise_q4,
-              BufferView<std::uint32_t> planes, Size size) const;
+              const Buffer& clear, BufferView<std::uint32_t> planes, Size size) const;
 
  private:
   Kernel kernel_;

@@ -44,13 +44,16 @@ TEST(MatchPlanesVk, Agrees) {
       for (const test::Fill how : test::kFills)
         for (const bool masked : {false, true}) {
           const int noise_q4 = masked ? 70 : 0;
+          const bool clear = rng() % 2 == 0;
+          const std::int32_t known = clear ? 1 : -1;
+          const auto word = must(vk::make_filled(device, "clear", std::as_bytes(std::span(&known, 1))));
           Image<std::uint8_t> gray(size), inside(size);
           test::fill(gray.view(), how, rng);
           for (int y = 0; y < size.height; ++y)
             for (int x = 0; x < size.width; ++x) inside.at(y, x) = rng() % 13 ? 255 : 0;
           PlaneImages want(size, 0);
           ref::match_planes(gray, masked ? View<const std::uint8_t>(inside) : View<const std::uint8_t>{},
-                            census_dead_zone(noise_q4), want);
+                            census_dead_zone(noise_q4), clear, want);
 
           const OnDevice<std::uint8_t> in(device, gray, "gray"), mask(device, inside, "inside");
           const auto noise = must(vk::Buffer::make(device, "noise", sizeof(std::uint32_t), vk::Memory::kDevice));
@@ -59,8 +62,8 @@ TEST(MatchPlanesVk, Agrees) {
               recorder,
               [&] {
                 recorder.fill(noise, noise_q4);
-                stage.record(recorder, in.view(), masked ? mask.view() : vk::BufferView<std::uint8_t>{}, noise, out.view(),
-                             size);
+                stage.record(recorder, in.view(), masked ? mask.view() : vk::BufferView<std::uint8_t>{}, noise, word,
+                             out.view(), size);
               },
               in, mask, out);
           const std::string what = "match_planes" + where;

@@ -10,8 +10,8 @@ struct Views {
   PlaneImages left, right;
   Views(View<const std::uint8_t> l, View<const std::uint8_t> r, View<const std::uint8_t> inside, int max_disparity)
       : left(l.size(), PlaneImages::kPadRight), right(l.size(), simd::SemiGlobalScratch::padding(max_disparity)) {
-    ref::match_planes(l, inside, 0, left);
-    ref::match_planes(r, inside, 0, right);
+    ref::match_planes(l, inside, 0, false, left);
+    ref::match_planes(r, inside, 0, false, right);
   }
   SemiGlobal in(int max_disparity, const SemiGlobalParams& params) const {
     return {left.planes(), right.planes(), max_disparity, params};

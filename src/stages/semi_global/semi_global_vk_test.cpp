@@ -63,8 +63,8 @@ struct Planes {
         inside.at(y, x) = rng() % 11 ? 255 : 0;
       }
     const auto mask = c.masked ? View<const std::uint8_t>(inside) : View<const std::uint8_t>{};
-    ref::match_planes(l, mask, 0, left);
-    ref::match_planes(r, mask, 0, right);
+    ref::match_planes(l, mask, 0, false, left);
+    ref::match_planes(r, mask, 0, false, right);
   }
 };
 

@@ -10,6 +10,7 @@ namespace duo {
 /// Shape   all H x W; the inside pictures (255 inside, 0 outside) may be empty = all inside
 struct GrayPair {
   View<const std::uint8_t> left = {}, right = {}, left_inside = {}, right_inside = {};
+  std::uint64_t turn = 0;  // which of its stream, from 0
   Size size() const { return left.size(); }
   bool masked() const { return !left_inside.empty(); }
 };

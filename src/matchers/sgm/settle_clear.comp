@@ -1,0 +1,17 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "stages/types/clear.h"
+#include "matchers/sgm/settle_clear_params.h"
+
+// duo::looks_clear() and ClearStream::next(): recordings run one after the other, in the order of their pairs.
+layout(local_size_x = 1) in;
+layout(std430, binding = 0) buffer Noise { uint noise_q4; };  // 0 once it was looked at, where it must not count further on
+layout(std430, binding = 1) readonly buffer Blur { uint blur_q4; };
+layout(std430, binding = 2) buffer Stream { int known; };
+layout(push_constant) uniform Push { SettleClearPush p; };
+
+void main() {
+  const bool measured = noise_q4 == 0 && blur_q4 < kClearBlur_q4;
+  known = next_clear(known, p.clear != 1 ? p.clear == 2 : measured);
+  if (p.soften == 0) noise_q4 = 0;
+}
