@@ -23,4 +23,7 @@ endforeach()
 target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/live/live_pairs.cpp ${PROJECT_SOURCE_DIR}/src/sources/live/pairing.cpp)
 duoptic_test(sources/live ${PROJECT_SOURCE_DIR}/src/sources/live/live_test.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/camera/camera_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/stream_test.cpp)
+if(DUO_TESTS)
+  set_tests_properties(sources/live PROPERTIES RUN_SERIAL TRUE)  # it measures when pictures come
+endif()
 include(${CMAKE_CURRENT_LIST_DIR}/synthetic/files.cmake)
