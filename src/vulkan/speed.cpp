@@ -4,7 +4,7 @@
 #include <chrono>
 #include <vector>
 
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 #include "vulkan/recorder.h"
 
 namespace duo::vk {

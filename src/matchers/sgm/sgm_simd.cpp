@@ -60,7 +60,7 @@ void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBa
   timer.stage("check_left_right");
   simd::remove_speckle(pool_, joined.of(checked), params_.speckle_step_q4, params_.speckle, speckle_scratch_);
   timer.stage("speckle");
-  if (params_.smooth != 0) simd::weighted_median(pool_, {checked, in.left.value[0], {}, rows}, smooth_scratch_, out.d_q4);
+  if (params_.smooth != 0) simd::weighted_median(pool_, {checked, in.left.value[0], rows}, smooth_scratch_, out.d_q4);
   for (int y = 0; y < h; ++y)
     if (y < rows.begin || y >= rows.end) std::fill_n(out.d_q4.row(y), out.d_q4.width(), Disparity::kNone);
   if (!out.confidence.empty()) keep_confidence(out.d_q4, out.confidence);

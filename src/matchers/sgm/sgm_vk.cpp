@@ -49,8 +49,8 @@ Result<Sgm::Maps> Sgm::make_maps(Device& device, const SgmParams& params, const 
   // First what may be too large.
   DUO_TRY_ASSIGN(out.semi_global, SemiGlobal::Scratch::make(device, size, setup.max_disparity, params.semi_global()));
   DUO_TRY_ASSIGN(out.balance, Balance::Scratch::make(device, size));
-  DUO_TRY_ASSIGN(out.noise, Noise::Scratch::make(device));
-  DUO_TRY_ASSIGN(out.blur, Blur::Scratch::make(device));
+  DUO_TRY_ASSIGN(out.noise, Noise::make_scratch(device));
+  DUO_TRY_ASSIGN(out.blur, Blur::make_scratch(device));
   DUO_TRY_ASSIGN(out.speckle, RemoveSpeckle::Scratch::make(device, size));
   DUO_TRY_ASSIGN(out.balanced, make_map<std::uint8_t>(device, "balanced", size));
   DUO_TRY_ASSIGN(out.noise_q4, Buffer::make(device, "sgm noise", sizeof(std::uint32_t), Memory::kDevice));

@@ -1,13 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/blur/blur_params.h"
+#include "stages/types/block_measure_params.h"
 
 // The blur from the bins; one workgroup, of which four invocations walk along the bins of a picture and a distance each.
 layout(local_size_x = 4) in;
 layout(std430, binding = 0) readonly buffer Bins { uint bins[]; };  // [picture][distance][bin]
 layout(std430, binding = 1) writeonly buffer Blur { uint blur_q4; };
 
-layout(push_constant) uniform Push { BlurPush p; };
+layout(push_constant) uniform Push { QuantilePush p; };
 
 shared int levels[4];
 

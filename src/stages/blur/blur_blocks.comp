@@ -2,14 +2,15 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_8bit_storage : require
 #include "stages/blur/blur_params.h"
+#include "stages/types/block_measure_params.h"
 
 // An invocation a block: its 14x14 pixels. Moves half of both pictures' bytes, nearly all reads from the cache; 24 operations a
 // pixel looked at.
-layout(local_size_x = kBlurGroup) in;
+layout(local_size_x = kMeasureGroup) in;
 layout(std430, binding = 0) readonly buffer Left { uint8_t left[]; };
 layout(std430, binding = 1) readonly buffer Right { uint8_t right[]; };
 layout(std430, binding = 2) buffer Bins { uint bins[]; };  // [picture][distance][bin], 0 at first
-layout(push_constant) uniform Push { BlurBlocksPush p; };
+layout(push_constant) uniform Push { CountBlocksPush p; };
 
 int pixel(bool of_right, int y, int x) {
   return of_right ? int(right[p.right.offset + y * p.right.stride + x]) : int(left[p.left.offset + y * p.left.stride + x]);

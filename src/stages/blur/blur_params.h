@@ -1,7 +1,6 @@
 // Included by C++ and by GLSL.
 #ifndef DUO_BLUR_PARAMS_H
 #define DUO_BLUR_PARAMS_H
-#include "vulkan/plane.h"
 #ifdef __cplusplus
 namespace duo {
 #endif
@@ -15,22 +14,6 @@ const int kBlurShare = 20;     // one block of so many is at or below a picture'
 const int kBlurUnknown = 255;  // and the most there is
 
 #ifdef __cplusplus
-namespace vk {
-#endif
-
-const int kBlurGroup = 64;  // invocations, a block each
-
-struct BlurBlocksPush {
-  Plane left, right;
-  int blocks_x, blocks_y;  // of one picture
-};
-
-struct BlurPush {
-  int share;  // kBlurShare
-};
-
-#ifdef __cplusplus
-}  // namespace vk
 }  // namespace duo
 #endif
 #endif

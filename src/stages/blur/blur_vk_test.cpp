@@ -12,7 +12,7 @@ TEST(BlurVk, Agrees) {
   test::each_device([](vk::Device& device, const std::string& where) {
     std::mt19937 rng(7);
     const auto stage = must(vk::Blur::make(device));
-    const auto scratch = must(vk::Blur::Scratch::make(device));
+    const auto scratch = must(vk::Blur::make_scratch(device));
     auto recorder = must(vk::Recorder::make(device));
     const auto blur = must(vk::Buffer::make(device, "blur", sizeof(std::uint32_t), vk::Memory::kDevice));
     const auto found = must(vk::Buffer::make(device, "blur found", sizeof(std::uint32_t), vk::Memory::kDownload));

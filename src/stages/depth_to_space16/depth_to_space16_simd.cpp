@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/check.h"
+#include "core/tensor_rows.h"
 #include "stages/depth_to_space16/depth_to_space16.h"
 
 namespace duo::simd {
@@ -9,14 +10,10 @@ namespace duo::simd {
 void depth_to_space16(Pool& pool, ConstTensor16 x, Tensor16 y) {
   DUO_CHECK(y.width() == 2 * x.width() && y.height() == 2 * x.height() && x.channels() == 4 * y.channels());
   const int run = 2 * y.channels();
-  constexpr int kGrainValues = 1 << 16;  // less is done before another thread is awake
-  pool.rows(
-      y.height(),
-      [&](int begin, int end) {
-        for (int oy = begin; oy < end; ++oy)
-          for (int ix = 0; ix < x.width(); ++ix) std::copy_n(x.pixel(oy / 2, ix) + oy % 2 * run, run, y.pixel(oy, 2 * ix));
-      },
-      std::max(1, kGrainValues / (y.width() * y.channels())));
+  each_tensor_row(pool, y, [&](int begin, int end) {
+    for (int oy = begin; oy < end; ++oy)
+      for (int ix = 0; ix < x.width(); ++ix) std::copy_n(x.pixel(oy / 2, ix) + oy % 2 * run, run, y.pixel(oy, 2 * ix));
+  });
 }
 
 }  // namespace duo::simd

@@ -1,13 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_16bit_storage : require
-#include "stages/maxpool2x16/maxpool2x16_params.h"
+#include "vulkan/value_lanes.h"
 
 // Moves 10 bytes a value of the result.
 layout(local_size_x = kValueLanes) in;
 layout(std430, binding = 0) readonly buffer X { int16_t x[]; };
 layout(std430, binding = 1) writeonly buffer Y { int16_t y[]; };
-layout(push_constant) uniform Push { Maxpool2x16Push p; };
+layout(push_constant) uniform Push { ValuesPush p; };
 
 void main() {
   const int i = int(gl_GlobalInvocationID.x), picture = int(gl_WorkGroupID.y);

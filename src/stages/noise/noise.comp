@@ -1,13 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/types/noise.h"
-#include "stages/noise/noise_params.h"
+#include "stages/types/block_measure_params.h"
 
 // The level from the bins; one workgroup, of which two invocations walk along a picture's bins each.
 layout(local_size_x = 2) in;
 layout(std430, binding = 0) readonly buffer Bins { uint bins[]; };  // [picture][bin]
 layout(std430, binding = 1) writeonly buffer Noise { uint noise_q4; };
-layout(push_constant) uniform Push { NoisePush p; };
+layout(push_constant) uniform Push { QuantilePush p; };
 
 shared int levels[2];
 

@@ -1,7 +1,5 @@
 #include "stages/noise/noise_vk.h"
 
-#include "stages/noise/noise_params.h"
-
 namespace duo::vk {
 namespace {
 
@@ -14,29 +12,19 @@ constexpr std::uint32_t kNoiseCode[] = {
 
 }  // namespace
 
-Result<Noise::Scratch> Noise::Scratch::make(const Device& device) {
-  Scratch out;
-  DUO_TRY_ASSIGN(out.bins_,
-                 Buffer::make(device, "noise bins", 2 * std::size_t{kNoiseBins} * sizeof(std::uint32_t), Memory::kDevice));
+Result<Noise> Noise::make(const Device& device) {
+  Noise out;
+  DUO_TRY_ASSIGN(out.measure_, BlockMeasure::make(device, {"noise", kNoiseBlocksCode, kNoiseCode, kNoiseShare, 0}));
   return out;
 }
 
-Result<Noise> Noise::make(const Device& device) {
-  Noise out;
-  DUO_TRY_ASSIGN(out.blocks_, Kernel::make(device, {"noise blocks", kNoiseBlocksCode, 3, sizeof(NoiseBlocksPush)}));
-  DUO_TRY_ASSIGN(out.level_, Kernel::make(device, {"noise", kNoiseCode, 2, sizeof(NoisePush)}));
-  return out;
-}
+Result<Noise::Scratch> Noise::make_scratch(const Device& device) { return Scratch::make(device, "noise", 2 * kNoiseBins); }
 
 void Noise::record(Recorder& recorder, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right, const Scratch& scratch,
                    const Buffer& noise_q4, Size size) const {
   DUO_CHECK(left.holds(size) && right.holds(size) && noise_q4.bytes() >= sizeof(std::uint32_t));
-  const int across = noise_blocks(size.width, kNoiseBlock), down = noise_blocks(size.height, kNoiseRowStep);
-  if (across * down == 0) return recorder.fill(noise_q4, 0);
-  recorder.fill(scratch.bins_, 0);
-  recorder.dispatch(blocks_, NoiseBlocksPush{left.plane, right.plane, across, down},
-                    {reads(left), reads(right), writes(scratch.bins_)}, {(across * down + kNoiseGroup - 1) / kNoiseGroup, 2});
-  recorder.dispatch(level_, NoisePush{kNoiseShare}, {reads(scratch.bins_), writes(noise_q4)}, {1, 1});
+  const Size blocks = {noise_blocks(size.width, kNoiseBlock), noise_blocks(size.height, kNoiseRowStep)};
+  measure_.record(recorder, left, right, blocks, scratch, noise_q4);
 }
 
 }  // namespace duo::vk

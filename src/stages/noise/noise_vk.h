@@ -1,30 +1,22 @@
 #pragma once
 
 #include "stages/noise/noise.h"
-#include "vulkan/recorder.h"
+#include "stages/types/block_measure_vk.h"
 
 namespace duo::vk {
 
 /// The noise of a pair on a device; the contract is in noise.h.
 class Noise {
  public:
-  /// The bins; one for each recording that may run at the same time as another.
-  class Scratch {
-   public:
-    /// Errors  out of memory
-    static Result<Scratch> make(const Device& device);
-
-   private:
-    friend Noise;
-    Buffer bins_;
-  };
+  using Scratch = BlockMeasure::Scratch;
   static Result<Noise> make(const Device& device);
+  static Result<Scratch> make_scratch(const Device& device);
   /// `noise_q4`: one word.
   void record(Recorder& recorder, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right, const Scratch& scratch,
               const Buffer& noise_q4, Size size) const;
 
  private:
-  Kernel blocks_, level_;
+  BlockMeasure measure_;
 };
 
 }  // namespace duo::vk

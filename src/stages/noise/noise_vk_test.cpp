@@ -12,7 +12,7 @@ TEST(NoiseVk, Agrees) {
   test::each_device([](vk::Device& device, const std::string& where) {
     std::mt19937 rng(7);
     const auto stage = must(vk::Noise::make(device));
-    const auto scratch = must(vk::Noise::Scratch::make(device));
+    const auto scratch = must(vk::Noise::make_scratch(device));
     auto recorder = must(vk::Recorder::make(device));
     const auto noise = must(vk::Buffer::make(device, "noise", sizeof(std::uint32_t), vk::Memory::kDevice));
     const auto found = must(vk::Buffer::make(device, "noise found", sizeof(std::uint32_t), vk::Memory::kDownload));

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/check.h"
+#include "core/tensor_rows.h"
 #include "stages/resize2x16/resize2x16.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -60,9 +61,7 @@ namespace simd {
 void resize2x16(Pool& pool, ConstTensor16 x, Tensor16 y) {
   DUO_CHECK(y.width() == 2 * x.width() && y.height() == 2 * x.height() && x.channels() == y.channels());
   const auto rows = HWY_DYNAMIC_DISPATCH(resize_rows);
-  constexpr int kGrainValues = 1 << 15;  // less is done before another thread is awake
-  pool.rows(
-      y.height(), [&](int begin, int end) { rows(x, y, begin, end); }, std::max(1, kGrainValues / (y.width() * y.channels())));
+  each_tensor_row(pool, y, [&](int begin, int end) { rows(x, y, begin, end); });
 }
 
 }  // namespace simd

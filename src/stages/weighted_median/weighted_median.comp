@@ -5,16 +5,15 @@
 #extension GL_EXT_shader_16bit_storage : require
 #include "stages/weighted_median/weighted_median_params.h"
 
-// Bisection of the range of the taps' values: about ten rounds of 49 taps, kept packed in registers. Moves 6 bytes a pixel (with an
-// origin picture) and 4.4 words into the tile; about 600 operations for the weights and 150 a round.
+// Bisection of the range of the taps' values: about ten rounds of 49 taps, kept packed in registers. Moves 5 bytes a pixel
+// and 4.4 words into the tile; about 600 operations for the weights and 150 a round.
 layout(local_size_x = kGroupWidth, local_size_y = kGroupHeight) in;
 layout(std430, binding = 0) readonly buffer D { uint16_t d_q4[]; };
 layout(std430, binding = 1) readonly buffer Guide { uint8_t guide[]; };
-layout(std430, binding = 2) readonly buffer Origins { uint8_t origin[]; };
-layout(std430, binding = 3) writeonly buffer Dst { uint16_t dst[]; };
+layout(std430, binding = 2) writeonly buffer Dst { uint16_t dst[]; };
 layout(push_constant) uniform Push { WeightedMedianPush p; };
 
-const uint kNone = 0xFFFF, kFilled = 2;
+const uint kNone = 0xFFFF;
 const int kRadius = 6, kStep = 2, kSide = 2 * kRadius / kStep + 1, kTaps = kSide * kSide;
 const int kTileWidth = kGroupWidth + 2 * kRadius, kTileHeight = kGroupHeight + 2 * kRadius;
 // WeightedMedian::kWeights, four to a word.
@@ -32,7 +31,6 @@ uint load(ivec2 at) {
 uint weight_of(uint difference) { return kWeights[difference >> 4] >> ((difference >> 2 & 3) * 8) & 0xFF; }
 
 uint median_around(int centre) {
-  const uint own = tile[centre] & kNone;
   const int centre_guide = int(tile[centre] >> 16);
   uint taps[kTaps];  // weight << 16 | value; in registers, as both loops over it are unrolled
   uint total = 0, low = kNone, high = 0;
@@ -48,7 +46,6 @@ uint median_around(int centre) {
       high = max(high, value);
     }
   }
-  if (total == 0) return own;
   // The smallest value up to which there is half of all weight.
   while (low < high) {
     const uint middle = (low + high) >> 1;
@@ -72,7 +69,6 @@ void main() {
   if (at.x >= p.width || at.y >= p.height) return;
   const int centre = (int(gl_LocalInvocationID.y) + kRadius) * kTileWidth + int(gl_LocalInvocationID.x) + kRadius;
   uint value = tile[centre] & kNone;
-  const bool smoothed = p.only_filled != 0 ? uint(origin[index(p.origin, at)]) == kFilled : value != kNone;
-  if (smoothed) value = median_around(centre);
+  if (value != kNone) value = median_around(centre);
   dst[index(p.dst, at)] = uint16_t(value);
 }

@@ -14,11 +14,10 @@ namespace duo {
 ///
 /// Taps: the pixels at offsets {-6, -4, -2, 0, 2, 4, 6} in x and y that lie in the picture and have a disparity. A tap's weight
 /// is kWeights[|guide(tap) - guide(centre)| / 4], 0 for differences of 64 and more. Result: the smallest tap value v for which
-/// the taps with values <= v have at least half the weight of all; a pixel whose taps weigh nothing stays as it is. Smoothed
-/// are, with an empty `origin`, all pixels that have a disparity; else those with Origin::kFilled. All others are copied.
+/// the taps with values <= v have at least half the weight of all. Holes are copied.
 ///
 /// Shape    all H x W; dst is not the same memory as d_q4
-/// Units    d_q4 any value, Disparity::kNone = hole; guide gray values; origin Origin
+/// Units    d_q4 any value, Disparity::kNone = hole; guide gray values
 /// Border   taps outside the picture do not count
 /// Threads  rows are independent
 /// Exact    ref, simd and vk agree bit for bit; weights sum to 49 * 57 = 2793 at most
@@ -33,7 +32,6 @@ struct WeightedMedian {
 
   View<const std::uint16_t> d_q4;
   View<const std::uint8_t> guide;
-  View<const std::uint8_t> origin = {};
   RowBand rows = {};  // of dst that are needed; others may hold anything
 };
 

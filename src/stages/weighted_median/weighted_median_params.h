@@ -7,9 +7,8 @@ namespace duo::vk {
 #endif
 
 struct WeightedMedianPush {
-  Plane d_q4, guide, origin, dst;
+  Plane d_q4, guide, dst;
   int width, height;
-  int only_filled;  // 0 or 1: there is an origin picture
 };
 
 #ifdef __cplusplus

@@ -11,11 +11,6 @@ namespace {
 
 constexpr int kRadius = WeightedMedian::kRadius, kStep = WeightedMedian::kStep;
 
-bool is_smoothed(const WeightedMedian& in, int y, int x) {
-  if (in.origin.empty()) return in.d_q4.at(y, x) != Disparity::kNone;
-  return in.origin.at(y, x) == static_cast<std::uint8_t>(Origin::kFilled);
-}
-
 std::uint16_t median_around(const WeightedMedian& in, int y, int x) {
   std::vector<std::pair<std::uint16_t, int>> taps;  // value, weight
   int total = 0;
@@ -40,10 +35,10 @@ std::uint16_t median_around(const WeightedMedian& in, int y, int x) {
 }  // namespace
 
 void weighted_median(const WeightedMedian& in, View<std::uint16_t> dst) {
-  DUO_CHECK(in.d_q4.size() == dst.size() && in.guide.size() == dst.size() &&
-            (in.origin.empty() || in.origin.size() == dst.size()));
+  DUO_CHECK(in.d_q4.size() == dst.size() && in.guide.size() == dst.size());
   for (int y = 0; y < dst.height(); ++y)
-    for (int x = 0; x < dst.width(); ++x) dst.at(y, x) = is_smoothed(in, y, x) ? median_around(in, y, x) : in.d_q4.at(y, x);
+    for (int x = 0; x < dst.width(); ++x)
+      dst.at(y, x) = in.d_q4.at(y, x) == Disparity::kNone ? Disparity::kNone : median_around(in, y, x);
 }
 
 }  // namespace duo::ref

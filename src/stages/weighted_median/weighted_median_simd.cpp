@@ -140,22 +140,15 @@ void smooth_rows(const WeightedMedian& in, const simd::WeightedMedianScratch& s,
                  int y_end) {
   const hn::CappedTag<std::int16_t, kMaxLanes> d;
   const hn::RebindToUnsigned<decltype(d)> du;
-  const hn::Rebind<std::uint8_t, decltype(d)> d8;
   const int n = static_cast<int>(hn::Lanes(d)), w = dst.width();
   Window window(s);
   // The last vector of a row reaches past the end of views.
-  HWY_ALIGN_MAX std::uint8_t last_origins[kMaxLanes] = {};
   HWY_ALIGN_MAX std::uint16_t last_results[kMaxLanes];
   for (int y = y_begin; y < y_end; ++y) {
     window.at_row(y);
     for (int x = 0; x < w; x += n) {
       const int count = std::min(n, w - x);
-      auto smoothed = hn::Lt(hn::LoadU(d, s.guide.row(y) + kPadLeft + x), hn::Set(d, kNowhere));
-      if (!in.origin.empty()) {
-        const std::uint8_t* origins = in.origin.row(y) + x;
-        if (count < n) std::copy_n(origins, count, last_origins), origins = last_origins;
-        smoothed = hn::Eq(hn::PromoteTo(d, hn::LoadU(d8, origins)), hn::Set(d, static_cast<std::int16_t>(Origin::kFilled)));
-      }
+      const auto smoothed = hn::Lt(hn::LoadU(d, s.guide.row(y) + kPadLeft + x), hn::Set(d, kNowhere));
       if (hn::AllFalse(d, smoothed)) {
         std::copy_n(in.d_q4.row(y) + x, count, dst.row(y) + x);
         continue;
@@ -189,8 +182,7 @@ WeightedMedianScratch::WeightedMedianScratch(Size size_in) : size(size_in) {
 }
 
 void weighted_median(Pool& pool, const WeightedMedian& in, WeightedMedianScratch& scratch, View<std::uint16_t> dst) {
-  DUO_CHECK(in.d_q4.size() == dst.size() && in.guide.size() == dst.size() &&
-            (in.origin.empty() || in.origin.size() == dst.size()));
+  DUO_CHECK(in.d_q4.size() == dst.size() && in.guide.size() == dst.size());
   DUO_CHECK(scratch.size == dst.size());
   const auto pad = HWY_DYNAMIC_DISPATCH(pad_row);
   const RowBand rows = in.rows.within(dst.height()), taps = in.rows.grown(kRadius, dst.height());

@@ -8,10 +8,10 @@ namespace duo::vk {
 /// Weighted median on a device; the contract is in weighted_median.h.
 class WeightedMedian {
  public:
-  /// duo::WeightedMedian on the device; origin may be absent.
+  /// duo::WeightedMedian on the device.
   struct Input {
     BufferView<std::uint16_t> d_q4 = {};
-    BufferView<std::uint8_t> guide = {}, origin = {};
+    BufferView<std::uint8_t> guide = {};
   };
   static Result<WeightedMedian> make(const Device& device);
   void record(Recorder& recorder, const Input& in, BufferView<std::uint16_t> dst, Size size) const;

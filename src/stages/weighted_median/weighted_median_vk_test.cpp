@@ -8,12 +8,10 @@ namespace {
 using test::must;
 using test::OnDevice;
 
-enum class Smoothed { kAll, kFilled };
-
 void expect_agrees(vk::Device& device, const vk::WeightedMedian& stage, vk::Recorder& recorder, Size size, test::Fill how,
-                   Smoothed which, std::mt19937& rng, const std::string& what) {
+                   std::mt19937& rng, const std::string& what) {
   Image<std::uint16_t> d_q4(size), want(size);
-  Image<std::uint8_t> guide(size), origin(size);
+  Image<std::uint8_t> guide(size);
   test::fill(d_q4.view(), how, rng);
   test::fill(guide.view(), test::Fill::kRandom, rng);
   const int contrast = rng() % 2 ? 255 : 63;  // few gray values, so that all weights occur
@@ -21,18 +19,17 @@ void expect_agrees(vk::Device& device, const vk::WeightedMedian& stage, vk::Reco
     for (int x = 0; x < size.width; ++x) {
       if (rng() % 5 == 0) d_q4.at(y, x) = Disparity::kNone;
       guide.at(y, x) &= static_cast<std::uint8_t>(contrast);
-      origin.at(y, x) = static_cast<std::uint8_t>(rng() % 3);
     }
-  duo::WeightedMedian in{d_q4, guide};
-  if (which == Smoothed::kFilled) in.origin = origin;
-  ref::weighted_median(in, want);
+  ref::weighted_median({d_q4, guide}, want);
 
   const OnDevice<std::uint16_t> d(device, d_q4, "d_q4"), dst(device, size, "dst");
-  const OnDevice<std::uint8_t> g(device, guide, "guide"), o(device, origin, "origin");
-  vk::WeightedMedian::Input input{d.view(), g.view()};
-  if (which == Smoothed::kFilled) input.origin = o.view();
+  const OnDevice<std::uint8_t> g(device, guide, "guide");
   test::run_with(
-      recorder, [&] { stage.record(recorder, input, dst.view(), size); }, d, g, o, dst);
+      recorder,
+      [&] {
+        stage.record(recorder, {d.view(), g.view()}, dst.view(), size);
+      },
+      d, g, dst);
   test::expect_same<std::uint16_t>(want, dst.pixels(what), what);
 }
 
@@ -42,11 +39,10 @@ TEST(WeightedMedianVk, Agrees) {
     const auto stage = must(vk::WeightedMedian::make(device));
     auto recorder = must(vk::Recorder::make(device));
     for (const Size size : {Size{1, 1}, Size{3, 2}, Size{6, 14}, Size{17, 9}, Size{70, 20}})
-      for (const test::Fill how : test::kFills)
-        for (const Smoothed which : {Smoothed::kAll, Smoothed::kFilled}) {
-          expect_agrees(device, stage, recorder, size, how, which, rng, "weighted median" + where);
-          if (::testing::Test::HasFailure()) return;
-        }
+      for (const test::Fill how : test::kFills) {
+        expect_agrees(device, stage, recorder, size, how, rng, "weighted median" + where);
+        if (::testing::Test::HasFailure()) return;
+      }
   });
 }
 
