@@ -12,7 +12,7 @@ duo::Result<void> print_the_depth(const char* left, const char* right, const cha
   DUO_TRY_ASSIGN(auto pipeline, duo::Pipeline::open(std::move(pairs), setup));
   while (true) {
     DUO_TRY_ASSIGN(const duo::Next next, pipeline.next());
-    if (next != duo::Next::kPicture) return {};
+    if (next != duo::Next::kNew) return {};
     const duo::Image<std::uint16_t>& depth_mm = pipeline.frame()->depth_mm;
     std::printf("%.2f m\n", depth_mm.at(depth_mm.height() / 2, depth_mm.width() / 2) / 1000.0);
   }

@@ -25,7 +25,7 @@ class ThreePairs final : public PairSource {
     into.right.pixels = scene_.pair.right.pixels.clone();
     into.left.t_ns = into.right.t_ns = given_ * 33'333'333;
     into.sequence = static_cast<std::uint64_t>(given_++);
-    return Next::kPicture;
+    return Next::kNew;
   }
 
  private:
@@ -96,7 +96,7 @@ TEST(AddedParts, GoTheWholeWay) {
   ASSERT_TRUE(pipeline->add_sink("kept", std::make_unique<Keep>(kept)));
   for (int i = 0; i < 3; ++i) {
     const auto next = pipeline->next();
-    ASSERT_TRUE(next && *next == Next::kPicture);
+    ASSERT_TRUE(next && *next == Next::kNew);
     ASSERT_TRUE(pipeline->write());
   }
   EXPECT_EQ(*pipeline->next(), Next::kEnd);

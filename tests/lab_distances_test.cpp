@@ -84,8 +84,8 @@ std::map<std::string, std::vector<Sample>> sample_all(const fs::path& persons) {
     auto pairs = open_pairs(left, right);
     Pair pair;
     const auto next = pairs ? (*pairs)->next(pair) : pairs.error();
-    EXPECT_TRUE(next && *next == Next::kPicture) << left;
-    if (!next || *next != Next::kPicture) continue;
+    EXPECT_TRUE(next && *next == Next::kNew) << left;
+    if (!next || *next != Next::kNew) continue;
     const RowOffsets rows = find_row_offsets(pair, 2);
     EXPECT_TRUE(rows.matter() && rows.lens) << left;
     for (const char* matcher : {"pyramid", "sgm"})

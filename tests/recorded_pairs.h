@@ -73,7 +73,7 @@ inline Written write_recording(const std::filesystem::path& path, int pairs, boo
 
 struct Played {
   std::vector<Pair> pairs;
-  Next end = Next::kPicture;
+  Next end = Next::kNew;
   std::string warning, error;
 };
 
@@ -90,7 +90,7 @@ inline Played play(const std::filesystem::path& path) {
     if (!next) out.error = next.error().what;
     if (next) out.end = *next;
     out.warning = (*source)->warning();
-    if (!next || *next != Next::kPicture) return out;
+    if (!next || *next != Next::kNew) return out;
     out.pairs.push_back(std::move(pair));
   }
 }

@@ -3,17 +3,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "board_pictures.h"
 #include "command.h"
 #include "duoptic/calibrate.h"
 #include "from_scene.h"
 #include "progress.h"
+#include "rig_report.h"
 
 namespace duo::app::calibrate {
 namespace {
@@ -35,13 +34,6 @@ struct Options {
 };
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-
-std::string now_utc() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
-  return text;
-}
 
 /// rig.json gets rig_report.html.
 std::filesystem::path report_path(const Options& options) {
@@ -182,7 +174,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(Calibration calibration, calibrator->solve());
   calibration.rig.left_name = options.left_name;
   calibration.rig.right_name = options.right_name;
-  calibration.rig.date = now_utc();
+  calibration.rig.date = date_now();
   if (app.count("--square-mm") == 0)
     calibration.warnings.push_back(
         fmt::format("--square-mm was not given, and squares of {} mm were assumed: measure them, every "

@@ -13,7 +13,6 @@
 #include "frame_files.h"
 #include "progress.h"
 #include "timing.h"
-#include "truth.h"
 
 namespace duo::app::demo {
 namespace {
@@ -76,7 +75,7 @@ Result<void> write_pictures(const SyntheticPair& raw, const Run& run, const std:
   return out.publish();
 }
 
-void print(const char* what, const Accuracy& a) {
+void print(const char* what, const RenderedAccuracy& a) {
   fmt::print("{:<44} {:5.1f} % of the pixels, {:4.1f} % of them off by more than 1 px, median depth error {:.2f} %\n", what,
              a.coverage_percent, a.bad_percent, a.depth_error_percent);
 }
@@ -92,14 +91,20 @@ Result<void> track_person(const Options& options, const CLI::App& app) {
     DUO_TRY(write_clip(setup, clip, options.engine.threads, [&](int done, int) { progress.frame(done); }));
   }
   DUO_TRY_ASSIGN(const ClipTruth truth, load_clip(clip));
-  std::vector<eval_clip::ClipScore> scores;
+  std::vector<ClipScore> scores;
   for (const char* tracker : {"arm", "thesis"}) {
-    TrackingOptions arm;
-    arm.engine = options.engine;
-    arm.tracker = tracker;
-    const std::string video = (std::filesystem::path(options.folder) / fmt::format("{}.mp4", tracker)).string();
-    DUO_TRY_ASSIGN(eval_clip::ClipScore score, eval_clip::track_clip(clip, truth, truth.rig, arm, {}, 0, video));
-    if (!score.note.empty()) say(app, "warning: " + score.note);
+    TrackingOptions tracking;
+    tracking.engine = options.engine;
+    tracking.tracker = tracker;
+    DUO_TRY_ASSIGN(PipelineSetup pipeline, eval_clip::setup_of(tracking, clip, truth.rig));
+    const auto add_video = [&](Pipeline& to) -> Result<void> {
+      const std::string video = (std::filesystem::path(options.folder) / fmt::format("{}.mp4", tracker)).string();
+      std::string note;
+      DUO_TRY_ASSIGN(auto sink, make_panel_video(video, to.header(), note));
+      if (!note.empty()) say(app, "warning: " + note);
+      return to.add_sink(video, std::move(sink));
+    };
+    DUO_TRY_ASSIGN(ClipScore score, score_clip(clip, truth, {.pipeline = std::move(pipeline), .add_sinks = add_video}));
     scores.push_back(std::move(score));
   }
   fmt::print("\nThe arm against its exact joints, mm; the thesis's tracker of 2010 beside ours\n");

@@ -34,7 +34,7 @@ constexpr char kFooter[] =
 
 struct Options {
   std::string left, right, rig, folder = "duoptic_out";
-  int max_disparity = 128;
+  int max_disparity = Setup().max_disparity;
   double near_m = 0;  // 0: max_disparity says how far to search
   std::int64_t every = 1;
   std::vector<std::string> windows;
@@ -88,7 +88,7 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
   while (!Interrupt::asked()) {
     DUO_TRY_ASSIGN(summary.end, pipeline.next());
     if (summary.end == Next::kNothing) continue;
-    if (summary.end != Next::kPicture) break;
+    if (summary.end != Next::kNew) break;
     if (const std::string event = pipeline.event(); !event.empty()) say(app, "warning: " + event);
     summary.ms.push_back(pipeline.times().engine_ms);
     summary.coverage_sum += coverage(*pipeline.frame());
@@ -175,8 +175,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   frames.max_disparity = options.max_disparity;
   if (frames.rig) {
     if (options.near_m > 0) {
-      DUO_TRY_ASSIGN(const RigDescription can, describe_rig(*frames.rig, options.near_m));
-      frames.max_disparity = can.max_disparity;
+      DUO_TRY_ASSIGN(frames.max_disparity, disparities_from(*frames.rig, options.near_m));
     }
     frames.wants = {.color = true, .depth = true};
   }

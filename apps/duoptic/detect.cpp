@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "command.h"
-#include "draw_people.h"
 #include "duoptic/detector.h"
+#include "duoptic/paint.h"
 #include "duoptic/sink.h"
 #include "duoptic/source.h"
 #include "interrupt.h"
@@ -96,7 +96,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
     do {
       DUO_TRY_ASSIGN(end, source->next(picture));
     } while (end == Next::kNothing && !Interrupt::asked());
-    if (end != Next::kPicture || Interrupt::asked()) break;
+    if (end != Next::kNew || Interrupt::asked()) break;
     const auto people = source->still() ? finder.look(picture.pixels) : finder.follow(picture.pixels);
     with_people += !people.empty();
     most = std::max(most, people.size());

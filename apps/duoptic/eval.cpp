@@ -13,8 +13,6 @@
 #include "eval_clip.h"
 #include "output.h"
 #include "peers.h"
-#include "perturb.h"
-#include "score.h"
 #include "timing.h"
 
 namespace duo::app::eval {
@@ -50,7 +48,7 @@ struct Options {
 
 struct SceneScore {
   std::string scene;
-  Score score;
+  DisparityScore score;
   double ms = 0;
 };
 struct MethodScores {
@@ -58,7 +56,7 @@ struct MethodScores {
   std::vector<SceneScore> scenes;
 };
 
-Result<Image<float>> match(const Scene& scene, const EngineOptions& options, bool keep_rows, double& ms) {
+Result<Image<float>> match(const StereoScene& scene, const EngineOptions& options, bool keep_rows, double& ms) {
   DUO_TRY_ASSIGN(const auto engine, make_engine(options.engine, options.threads));
   Setup setup = options.setup();
   setup.size = scene.pair.left.pixels.size();
@@ -75,18 +73,18 @@ Result<Image<float>> match(const Scene& scene, const EngineOptions& options, boo
   };
   once();  // warm caches
   ms = timed(once).wall_ms;
-  return to_px(frame->disparity.d_q4);
+  return disparity_as_px(frame->disparity.d_q4);
 }
 
-SceneScore score_peer(const Peer& peer, const Scene& scene, int threads) {
+SceneScore score_peer(const Peer& peer, const StereoScene& scene, int threads) {
   PeerMatcher matcher(peer, opencv_gray(scene.pair.left.pixels), opencv_gray(scene.pair.right.pixels), scene.max_disparity);
   matcher.run(threads);
   const double ms = timed([&] { matcher.run(threads); }).wall_ms;
-  return {scene.name, score(matcher.disparity_px(), scene), ms};
+  return {scene.name, score_disparity(matcher.disparity_px(), scene), ms};
 }
 
 /// Right within 1 px: gray by its error; wrong in a seen region: red; wrong where occluded: blue; hole: black.
-Image<Rgb8> draw_errors(const Image<float>& d_px, const Scene& scene) {
+Image<Rgb8> draw_errors(const Image<float>& d_px, const StereoScene& scene) {
   Image<Rgb8> out(d_px.size());
   for (int y = 0; y < out.height(); ++y)
     for (int x = 0; x < out.width(); ++x) {
@@ -100,9 +98,9 @@ Image<Rgb8> draw_errors(const Image<float>& d_px, const Scene& scene) {
   return out;
 }
 
-using Percent = const BadPercent& (*)(const Score&);
-const BadPercent& filled(const Score& s) { return s.bad_filled; }
-const BadPercent& holes_bad(const Score& s) { return s.bad_holes; }
+using Percent = const BadPercent& (*)(const DisparityScore&);
+const BadPercent& filled(const DisparityScore& s) { return s.bad_filled; }
+const BadPercent& holes_bad(const DisparityScore& s) { return s.bad_holes; }
 
 /// Mean over scenes and regions at one threshold; over the four scenes of version 2 it is that evaluation's mean.
 double mean(const MethodScores& method, Percent percent, std::size_t threshold) {
@@ -137,7 +135,7 @@ nlohmann::json to_json(const MethodScores& method) {
   nlohmann::json out = {{"method", method.method}, {"scenes", scenes}};
   const auto means = [](const MethodScores& m) {
     nlohmann::json j = {{"bad_filled_percent", nlohmann::json::array()}, {"bad_holes_percent", nlohmann::json::array()}};
-    for (std::size_t t = 0; t < kThresholdsPx.size(); ++t) {
+    for (std::size_t t = 0; t < kBadThresholds_px.size(); ++t) {
       j["bad_filled_percent"].push_back(mean(m, filled, t));
       j["bad_holes_percent"].push_back(mean(m, holes_bad, t));
     }
@@ -198,17 +196,17 @@ Contest contest(const Options& all) {
   return out;
 }
 
-Result<std::vector<MethodScores>> score_contest(const Contest& contest, const std::vector<Scene>& scenes,
+Result<std::vector<MethodScores>> score_contest(const Contest& contest, const std::vector<StereoScene>& scenes,
                                                 const Perturbation& how) {
   std::vector<MethodScores> out;
   for (const std::string& name : contest.names) out.push_back({name, {}});
-  for (const Scene& scene : scenes) {
-    Scene worse{scene.name, perturb(scene.pair, how), scene.max_disparity, scene.truth_px.clone(), {}};
+  for (const StereoScene& scene : scenes) {
+    StereoScene worse{scene.name, perturb(scene.pair, how), scene.max_disparity, scene.truth_px.clone(), {}};
     worse.regions = {scene.regions.all.clone(), scene.regions.nonocc.clone(), scene.regions.disc.clone()};
     for (std::size_t i = 0; i < contest.ours.size(); ++i) {
       double ms = 0;
       DUO_TRY_ASSIGN(const Image<float> d_px, match(worse, contest.ours[i], contest.keep_rows, ms));
-      out[i].scenes.push_back({scene.name, score(d_px, worse), ms});
+      out[i].scenes.push_back({scene.name, score_disparity(d_px, worse), ms});
     }
     for (std::size_t i = 0; i < contest.peers.size(); ++i)
       out[contest.ours.size() + i].scenes.push_back(score_peer(contest.peers[i], worse, contest.ours[0].threads));
@@ -218,9 +216,9 @@ Result<std::vector<MethodScores>> score_contest(const Contest& contest, const st
 
 Result<Exit> run_perturbed(const Options& options) {
   DUO_TRY_ASSIGN(const auto folders, find_scenes({options.folders.begin(), options.folders.end()}));
-  std::vector<Scene> scenes;
+  std::vector<StereoScene> scenes;
   for (const fs::path& folder : folders) {
-    DUO_TRY_ASSIGN(Scene scene, load_scene(folder));
+    DUO_TRY_ASSIGN(StereoScene scene, load_scene(folder));
     scenes.push_back(std::move(scene));
   }
   const Contest all = contest(options);
@@ -270,12 +268,12 @@ Result<Exit> run(const Options& options) {
   if (!options.no_peers)
     for (const Peer& peer : accuracy_peers()) methods.push_back({fmt::format("OpenCV {}", peer.name), {}});
   for (const fs::path& folder : folders) {
-    DUO_TRY_ASSIGN(const Scene scene, load_scene(folder));
+    DUO_TRY_ASSIGN(const StereoScene scene, load_scene(folder));
     std::vector<Image<float>> d_px;
     for (std::size_t i = 0; i < ours.size(); ++i) {
       double ms = 0;
       DUO_TRY_ASSIGN(Image<float> found, match(scene, ours[i], options.keep_rows, ms));
-      methods[i].scenes.push_back({scene.name, score(found, scene), ms});
+      methods[i].scenes.push_back({scene.name, score_disparity(found, scene), ms});
       d_px.push_back(std::move(found));
     }
     for (std::size_t i = first_peer; i < methods.size(); ++i)
@@ -289,7 +287,7 @@ Result<Exit> run(const Options& options) {
   const bool v2 = has_v2(methods[0]);
   if (options.json) {
     nlohmann::json out = {
-        {"thresholds_px", kThresholdsPx}, {"regions", {"nonocc", "all", "disc"}}, {"methods", nlohmann::json::array()}};
+        {"thresholds_px", kBadThresholds_px}, {"regions", {"nonocc", "all", "disc"}}, {"methods", nlohmann::json::array()}};
     for (const MethodScores& m : methods) out["methods"].push_back(to_json(m));
     if (v2) out["thesis_v2_mean_percent"] = kThesisMean;
     fmt::print("{}\n", out.dump(2));

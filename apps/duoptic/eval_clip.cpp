@@ -1,21 +1,14 @@
 // duoptic eval clip: the tracker against clips with exact joints and depth.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
-#include <random>
 
 #include "eval_clip.h"
-#include "selection.h"
-#include "timing.h"
+#include "input.h"
 
 namespace duo::app::eval_clip {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr char kFooter[] =
     "A clip is a folder with left.avi, right.avi, calibration_truth.yml and truth.json, perhaps depth/. The clicks are the "
@@ -39,121 +32,8 @@ struct Options {
   std::vector<std::string> joints;
   double jitter_px = 0;
   bool compare = false, json = false;
-  TrackingOptions arm;
+  TrackingOptions tracking;
 };
-
-/// A click on each joint, moved by `jitter_px` in a direction of its own, the same in every run; the ends of limbs come first.
-Selection clicks(const Skeleton& skeleton, const FrameTruth& truth, double jitter_px, std::mt19937& random) {
-  Selection selection{&skeleton, {}};
-  for (std::size_t j = skeleton.joints.size(); j-- > 0;) {
-    const JointTruth& joint = *truth[static_cast<std::size_t>(skeleton.joints[j].id)];
-    const double angle_rad = 2 * std::numbers::pi * static_cast<double>(random()) / 4294967296.0;
-    selection.clicks.push_back(
-        {skeleton.joints[j].id, joint.u_px + jitter_px * std::cos(angle_rad), joint.v_px + jitter_px * std::sin(angle_rad)});
-  }
-  return selection;
-}
-
-/// A joint that nobody has is lost.
-JointSample sample(const JointTruth& truth, JointId id, std::span<const Person> people, const Mat3& rig_from_left) {
-  for (const Person& person : people)
-    if (const Joint* found = person.find(id)) {
-      const Vec3 off_m = found->p_in_rig_m - rig_from_left * truth.p_in_left_m;
-      return {truth.visible, found->state, 1000 * norm(off_m), 1000 * found->sigma_m()};
-    }
-  return {truth.visible, JointState::kLost, 0, 0};
-}
-
-/// What is scored, and whose joints have to be clicked for it.
-struct Wanted {
-  std::vector<JointId> joints, clicked;
-  std::vector<const Skeleton*> skeletons;
-};
-
-Result<Wanted> wanted(const Tracker& tracker, const ClipTruth& truth, std::vector<JointId> joints) {
-  const auto add = [](const Skeleton& skeleton, std::vector<JointId>& to) {
-    for (std::size_t j = skeleton.joints.size(); j-- > 0;) to.push_back(skeleton.joints[j].id);
-  };
-  if (joints.empty())
-    for (const Skeleton* skeleton : tracker.skeletons())
-      if (tracker.starts_by_itself() || skeleton->joints[0].side == truth.arm) add(*skeleton, joints);
-  Wanted out{std::move(joints), {}, {}};
-  for (const JointId joint : out.joints) {
-    DUO_TRY(truth.check(joint));
-    const auto skeletons = tracker.skeletons();
-    const auto with =
-        std::find_if(skeletons.begin(), skeletons.end(), [&](const Skeleton* s) { return s->index_of(joint).has_value(); });
-    if (with == skeletons.end())
-      return Error{ErrorCode::kBadInput, fmt::format("cannot score {}: the tracker {} finds {}", name_of(joint), tracker.name(),
-                                                     joint_names(skeletons))};
-    if (tracker.starts_by_itself() || std::find(out.skeletons.begin(), out.skeletons.end(), *with) != out.skeletons.end())
-      continue;
-    out.skeletons.push_back(*with);
-    add(**with, out.clicked);
-  }
-  for (const JointId joint : out.clicked) DUO_TRY(truth.check(joint));
-  return out;
-}
-
-}  // namespace
-
-Result<ClipScore> track_clip(const fs::path& folder, const ClipTruth& truth, const Rig& rig, const TrackingOptions& options,
-                             const std::vector<JointId>& joints, double jitter_px, const std::string& video) {
-  DUO_TRY_ASSIGN(const auto tracker, make_tracker(options.tracker));
-  DUO_TRY_ASSIGN(const Wanted want, wanted(*tracker, truth, joints));
-  ClipScore score{truth.name, options.tracker, 0, 0, 0, {}, {}, {}};
-  DUO_TRY_ASSIGN(score.first, truth.first_visible(want.clicked));
-  std::vector<Selection> selections;
-  std::mt19937 random(1);
-  for (const Skeleton* skeleton : want.skeletons)
-    selections.push_back(clicks(*skeleton, truth.frames[static_cast<std::size_t>(score.first)], jitter_px, random));
-  const std::string left = (folder / "left.avi").string(), right = (folder / "right.avi").string();
-  DUO_TRY_ASSIGN(Input input, open_input(left, right, rig, truth.skew_ms));
-  TrackingOptions tracking = options;
-  tracking.all_maps = true;  // and not in bulk: other frames would be made while a frame is scored
-  PipelineSetup setup = tracking.setup(input);
-  setup.first = score.first;
-  DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
-  const Rectified& rectified = pipeline.header().rectified;
-  if (!video.empty()) {
-    DUO_TRY_ASSIGN(auto sink, make_panel_video(video, pipeline.header(), score.note));
-    DUO_TRY(pipeline.add_sink(video, std::move(sink)));
-  }
-  std::vector<std::vector<JointSample>> samples(want.joints.size());
-  DepthTally depth;
-  double busy_ms = 0;  // without scoring, during which nothing goes on in the background
-  for (std::int64_t i = score.first; i < static_cast<std::int64_t>(truth.frames.size()); ++i) {
-    const FrameTruth& frame = truth.frames[static_cast<std::size_t>(i)];
-    Result<Next> next = Next::kEnd;
-    Result<void> selected;
-    busy_ms += timed([&] {
-                 next = pipeline.next();
-                 if (!next || *next != Next::kPicture) return;
-                 if (i == score.first && !selections.empty()) selected = pipeline.select(selections);
-                 pipeline.wait();
-               }).wall_ms;
-    if (!next) return next.error();
-    if (!selected) return selected.error();
-    if (*next != Next::kPicture)
-      return Error{ErrorCode::kBadInput, fmt::format("cannot evaluate {}: its videos end before frame {} of {} in truth.json",
-                                                     folder.string(), i, truth.frames.size())};
-    for (std::size_t j = 0; j < want.joints.size(); ++j) {
-      const JointId id = want.joints[j];
-      samples[j].push_back(sample(*frame[static_cast<std::size_t>(id)], id, pipeline.people(), rectified.rig_from_left));
-    }
-    DUO_TRY_ASSIGN(const DepthTruth depth_truth, load_depth(folder, i));
-    depth.add(*pipeline.frame(), rectified, truth.rig.left, depth_truth);
-    DUO_TRY(pipeline.write());
-    ++score.frames;
-  }
-  score.fps = 1000 * static_cast<double>(score.frames) / busy_ms;
-  for (std::size_t j = 0; j < want.joints.size(); ++j) score.joints.emplace_back(want.joints[j], score_joint(samples[j]));
-  score.depth = depth.score();
-  DUO_TRY(pipeline.finish_sinks());
-  return score;
-}
-
-namespace {
 
 template <class T>
 nlohmann::json or_null(const std::optional<T>& value) {
@@ -188,7 +68,7 @@ std::string cell(const std::optional<double>& value, int digits, const char* uni
   return value ? fmt::format("{:.{}f}{}", *value, digits, unit) : "-";
 }
 
-void print(const ClipScore& score) {
+void print_lines(const ClipScore& score) {
   for (const auto& [id, s] : score.joints) {
     const bool first = id == score.joints[0].first;
     const std::string recover =
@@ -210,10 +90,16 @@ void print(const ClipScore& score) {
 
 }  // namespace
 
+Result<PipelineSetup> setup_of(const TrackingOptions& tracking, const std::filesystem::path& clip, const Rig& rig) {
+  TrackingOptions all = tracking;
+  all.all_maps = true;
+  return all.setup({nullptr, rig, {(clip / "left.avi").string(), (clip / "right.avi").string()}});
+}
+
 void print(const std::vector<ClipScore>& scores) {
   fmt::print("{:<18} {:<8} {:<14} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "clip", "tracker", "joint", "median", "p95",
              "bad", "recover", "hidden", "h.lost", "3 sigma");
-  for (const ClipScore& score : scores) print(score);
+  for (const ClipScore& score : scores) print_lines(score);
 }
 
 namespace {
@@ -232,18 +118,19 @@ Result<Exit> run(const Options& options) {
     if (!options.rig.empty()) {
       DUO_TRY_ASSIGN(rig, load_rig(options.rig));
     }
-    Options one = options;
-    std::vector<std::string> trackers = {options.arm.tracker};
+    TrackingOptions tracking = options.tracking;
+    std::vector<std::string> trackers = {tracking.tracker};
     if (options.compare) trackers = tracker_names();
     for (const std::string& tracker : trackers) {
-      one.arm.tracker = tracker;
-      DUO_TRY_ASSIGN(ClipScore score, track_clip(folder, truth, rig, one.arm, joints, options.jitter_px));
+      tracking.tracker = tracker;
+      DUO_TRY_ASSIGN(PipelineSetup setup, setup_of(tracking, folder, rig));
+      DUO_TRY_ASSIGN(ClipScore score, score_clip(folder, truth, {std::move(setup), joints, options.jitter_px}));
       scores.push_back(std::move(score));
     }
   }
   if (options.json) {
     nlohmann::json out = {
-        {"bad_mm", kBad_mm}, {"jitter_px", options.jitter_px}, {"rig", options.rig}, {"clips", nlohmann::json::array()}};
+        {"bad_mm", kBadJoint_mm}, {"jitter_px", options.jitter_px}, {"rig", options.rig}, {"clips", nlohmann::json::array()}};
     for (const ClipScore& score : scores) out["clips"].push_back(to_json(score));
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     return Exit::kOk;
@@ -259,7 +146,7 @@ Command add(CLI::App& eval) {
   const auto options = std::make_shared<Options>();
   sub->add_option("DIR", options->folders, "Folder of a clip")->required();
   sub->add_option("--rig", options->rig, "Tracks with this rig in place of the clips' true one")->type_name("FILE");
-  options->arm.add_to(*sub);
+  options->tracking.add_to(*sub);
   sub->add_option("--joints", options->joints, "The joints to score, by name; without it those of the arm that moves")
       ->type_name("NAME,NAME,...")
       ->delimiter(',')

@@ -34,7 +34,7 @@ struct Options {
 Result<Next> record_all(Pipeline& pipeline, const Options& options, const CLI::App& app) {
   const Interrupt interrupt;
   Progress progress(app, pipeline.count(), options.quiet);
-  Next next = Next::kPicture;
+  Next next = Next::kNew;
   while (!Interrupt::asked() && pipeline.recording().on && next != Next::kEnd && next != Next::kCut) {
     DUO_TRY_ASSIGN(next, pipeline.next());
     progress.frame(pipeline.recording().pairs);

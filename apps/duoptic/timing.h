@@ -1,9 +1,10 @@
 // Wall and CPU time of a call, and medians of them.
 #pragma once
 
-#include <algorithm>
 #include <ctime>
 #include <vector>
+
+#include "duoptic/statistics.h"
 
 namespace duo::app {
 
@@ -25,12 +26,7 @@ Times timed(F&& call) {
 }
 
 /// The median; 0 of nothing.
-inline double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+inline double median(std::vector<double> values) { return values.empty() ? 0 : duo::median(values); }
 
 inline Times median(const std::vector<Times>& runs) {
   std::vector<double> wall, cpu;

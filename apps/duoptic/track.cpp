@@ -4,12 +4,11 @@
 #include <memory>
 #include <optional>
 
+#include "duoptic/skew_watch.h"
 #include "interrupt.h"
 #include "progress.h"
 #include "rig_report.h"
-#include "selection.h"
 #include "sink_options.h"
-#include "skew_watch.h"
 #include "timing.h"
 #include "tracking_options.h"
 
@@ -80,7 +79,7 @@ Result<Next> next_frame(Pipeline& pipeline, Events& events) {
     if (Interrupt::asked()) return Next::kEnd;
     DUO_TRY_ASSIGN(const Next next, pipeline.next());
     if (pipeline.live()) events.see(pipeline.warning());
-    if (next == Next::kPicture) events.happened(pipeline.event());
+    if (next == Next::kNew) events.happened(pipeline.event());
     if (next != Next::kNothing) return next;
   }
 }
@@ -88,7 +87,7 @@ Result<Next> next_frame(Pipeline& pipeline, Events& events) {
 /// The frame in which joints are selected.
 Result<void> first_frame(Pipeline& pipeline, Events& events, std::int64_t number, const std::string& left) {
   DUO_TRY_ASSIGN(const Next next, next_frame(pipeline, events));
-  if (next == Next::kPicture) return {};
+  if (next == Next::kNew) return {};
   if (Interrupt::asked())
     return Error{ErrorCode::kBadInput,
                  fmt::format("stopped before frame {}, the one to select in, came from {}", number, left)};
@@ -126,7 +125,7 @@ Result<Summary> track_all(Pipeline& pipeline, Events& events, std::span<const Se
     events.look_at(pipeline);
     if (const auto warning = pipeline.live() ? skew.see(frame) : std::nullopt) say(app, "warning: " + *warning);
     DUO_TRY_ASSIGN(summary.end, next_frame(pipeline, events));
-    if (summary.end != Next::kPicture) break;
+    if (summary.end != Next::kNew) break;
   }
   DUO_TRY(pipeline.finish_sinks());
   return summary;
@@ -148,7 +147,8 @@ std::string text_of(const Summary& summary, double seconds, const Pipeline& pipe
 Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(const auto tracker, make_tracker(options.tracking.tracker));
   if (options.select.empty() && !tracker->starts_by_itself()) throw CLI::RequiredError("--select");
-  const std::vector<Selection> selections = parse_selections(options.select, options.arm_side, tracker->skeletons());
+  const auto selections = parse_selections(options.select, options.arm_side, tracker->skeletons());
+  if (!selections) throw CLI::ValidationError("--select", selections.error().what);
   std::optional<Rig> rig;
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(rig, load_rig(options.rig));
@@ -163,7 +163,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   TrackingOptions tracking = options.tracking;
   tracking.all_maps = options.sinks.wants_video();
   tracking.in_bulk = true;
-  PipelineSetup setup = tracking.setup(input);
+  DUO_TRY_ASSIGN(PipelineSetup setup, tracking.setup(input));
   setup.first = options.at_frame;
   setup.tell_times = options.stats;
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
@@ -173,7 +173,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   Events events(app);
   DUO_TRY(first_frame(pipeline, events, options.at_frame, options.left));
   Result<Summary> summary = Summary{};
-  const Times times = timed([&] { summary = track_all(pipeline, events, selections, options, app); });
+  const Times times = timed([&] { summary = track_all(pipeline, events, *selections, options, app); });
   pipeline.stop_recording();
   if (!summary) return summary.error();
   // stdout belongs to the lines when they go there.

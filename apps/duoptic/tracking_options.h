@@ -11,6 +11,7 @@ namespace duo::app {
 
 struct TrackingOptions {
   static constexpr double kNearest_m = 0.5;
+  static constexpr int kMostDisparities = 256;  // of every matcher: a large picture starts at a greater depth
 
   EngineOptions engine;
   std::string tracker = "arm";
@@ -19,7 +20,8 @@ struct TrackingOptions {
   bool in_bulk = false;   // of files: as many frames per second as can be, rather than each soon
 
   void add_to(CLI::App& app);
-  PipelineSetup setup(const Input& input) const;
+  /// Errors  those of disparities_from()
+  Result<PipelineSetup> setup(const Input& input) const;
 };
 
 }  // namespace duo::app

@@ -2,7 +2,6 @@
 set(dir ${PROJECT_SOURCE_DIR}/apps/viewer)
 target_sources(duoptic_tool PRIVATE
   ${dir}/clicks.cpp
-  ${dir}/cloud.cpp
   ${dir}/panels.cpp
   ${dir}/player.cpp
   ${dir}/sidebar.cpp

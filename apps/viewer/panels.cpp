@@ -214,10 +214,8 @@ void Panels::draw_depth(const Cell& cell) {
   const std::uint16_t d = d_q4.at(y, x);
   std::string text = "no depth";
   if (d != Disparity::kNone && d != 0) {
-    const Rectified& r = header_.rectified;
-    const double per_px_m = r.baseline_m * 16 / d;
-    text = fmt::format("{:.2f} m   x {:+.2f}  y {:+.2f}", r.focal_px * per_px_m, (x - r.cx_px) * per_px_m,
-                       (y - r.cy_px) * per_px_m);
+    const Vec3 p_m = header_.rectified.triangulate({static_cast<double>(x), static_cast<double>(y)}, d / 16.0);
+    text = fmt::format("{:.2f} m   x {:+.2f}  y {:+.2f}", p_m.z, p_m.x, p_m.y);
   }
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddCircle(mouse, 5 * scale_, kText, 0, 1.5f * scale_);
@@ -232,11 +230,10 @@ void Panels::put_depth_legend(const Cell& cell) {
   const ImVec2 to = {cell.caption.x + cell.caption_width, cell.caption.y + 10 * scale_};
   if (range_.empty()) return list.AddText(cell.caption, kFaint, "no depth");
   turbo_strip_.draw(list, cell.caption, to);
-  const Rectified& r = header_.rectified;
   std::vector<std::pair<float, float>> taken;
   for (const double z_m :
        {1.0, 2.0, 0.5, 5.0, 3.0, 1.5, 10.0, 0.7, 4.0, 2.5, 0.3, 0.4, 0.6, 0.8, 1.2, 7.0, 0.9, 6.0, 3.5, 1.4, 1.8, 20.0}) {
-    const double share = (r.focal_px * r.baseline_m / z_m - range_.far_px) / (range_.near_px - range_.far_px);
+    const double share = (header_.rectified.disparity_px(z_m) - range_.far_px) / (range_.near_px - range_.far_px);
     if (share < 0 || share > 1) continue;
     const std::string text = fmt::format("{:g} m", z_m);
     const float x = cell.caption.x + static_cast<float>(share) * cell.caption_width,
@@ -274,9 +271,7 @@ Result<void> Panels::draw_cloud_panel(const Cell& cell) {
   tall.to.y += (kCaption - kMargin) * scale_;  // no caption
   turn_cloud(tall);
   const OrbitCamera camera(orbit_, header_.rectified, size);
-  const bool turned = orbit_.yaw_rad != drawn_orbit_.yaw_rad || orbit_.pitch_rad != drawn_orbit_.pitch_rad ||
-                      orbit_.zoom != drawn_orbit_.zoom || orbit_.middle_m != drawn_orbit_.middle_m;
-  if (cloud_stale_ || turned || points_.size() != size) {
+  if (cloud_stale_ || orbit_ != drawn_orbit_ || points_.size() != size) {
     if (points_.size() != size) points_ = Image<Rgb8>(size);
     draw_points(shown_->frame->disparity.d_q4, shown_->frame->color, header_.rectified, camera, points_);
     DUO_TRY(cloud_.set(points_));
@@ -290,7 +285,7 @@ Result<void> Panels::draw_cloud_panel(const Cell& cell) {
     std::vector<std::optional<ImVec2>> places(person.count());
     for (std::size_t j = 0; j < places.size(); ++j)
       if (person.joints[j].state != JointState::kLost)
-        if (const auto at = camera.place(person.joints[j].p_in_rig_m)) places[j] = fit.place(at->x_px, at->y_px);
+        if (const auto at = camera.place(person.joints[j].p_in_rig_m)) places[j] = fit.place(at->x, at->y);
     for (std::size_t j = 0; j < places.size(); ++j) {
       const int parent = person.skeleton->joints[j].parent;
       const auto from = parent < 0 ? std::nullopt : places[static_cast<std::size_t>(parent)];

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "clicks.h"
-#include "cloud.h"
 #include "duoptic/paint.h"
 #include "player.h"
 #include "style.h"
@@ -63,8 +62,7 @@ class Panels {
   std::shared_ptr<const Shown> shown_;
   int shows_ = 0;
   DisparityRange range_;
-  Orbit orbit_;
-  Orbit drawn_orbit_;
+  Orbit orbit_, drawn_orbit_;
   bool cloud_stale_ = true, pressed_ = false;
   Image<Rgb8> painted_, points_;
   Texture camera_, depth_, region_, hue_, cloud_, turbo_strip_, hue_strip_;

@@ -34,7 +34,7 @@ class OnePair final : public PairSource {
     if (given_) return Next::kEnd;
     given_ = true;
     into = std::move(pair_);
-    return Next::kPicture;
+    return Next::kNew;
   }
   std::string warning() const override { return {}; }
 
@@ -53,7 +53,7 @@ Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options, const
   DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, options.rig));
   TrackingOptions tracking = options.tracking;
   tracking.all_maps = true;
-  PipelineSetup setup = tracking.setup(input);
+  DUO_TRY_ASSIGN(PipelineSetup setup, tracking.setup(input));
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
   player->rig_ = *pipeline.setup().rig;
   player->skew_ = SkewWatch(pipeline.header().rectified.baseline_m);
@@ -271,7 +271,7 @@ void Player::advance() {
   }
   if (*next == Next::kNothing) return;  // a step is still to come
   step_ = false;
-  if (*next != Next::kPicture) return at_end(*next);
+  if (*next != Next::kNew) return at_end(*next);
   const double now = now_ms();
   const double interval = last_ms_ > 0 ? now - last_ms_ : 0;
   last_ms_ = now;

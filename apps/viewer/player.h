@@ -11,9 +11,9 @@
 #include "duoptic/bounded_queue.h"
 #include "duoptic/pipeline.h"
 #include "duoptic/rig_health.h"
+#include "duoptic/skew_watch.h"
 #include "duoptic/worker.h"
 #include "sink_options.h"
-#include "skew_watch.h"
 #include "tracking_options.h"
 
 namespace duo::app::view {

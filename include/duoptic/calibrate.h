@@ -2,15 +2,47 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "duoptic/board.h"
 #include "duoptic/frame.h"
 #include "duoptic/rig.h"
+#include "duoptic/source.h"
 
 namespace duo {
+
+/// Pairs of pictures of a board: from two folders, or the still moments of two videos.
+class BoardPictures {
+ public:
+  /// Two folders pair by the numbers in their files' names; an empty `right` is the same folder, which then has both, told by
+  /// "left" and "right" in their names. Two videos give of every third of a second the stillest pair.
+  ///
+  /// Errors  those of sources; folders without pictures, or whose pictures do not pair
+  static Result<BoardPictures> open(const std::filesystem::path& left, const std::filesystem::path& right);
+
+  std::int64_t count() const;
+  /// False at the end. `name` says which pair it is, in words.
+  ///
+  /// Errors  those of Source::next()
+  Result<bool> next(Pair& into, std::string& name);
+  std::string warning() const { return video_ ? video_->warning() : ""; }
+  /// A video was cut short.
+  bool cut() const { return cut_; }
+
+ private:
+  Result<bool> next_still(Pair& into, std::string& name);
+
+  std::vector<std::pair<std::filesystem::path, std::filesystem::path>> files_;
+  std::size_t at_ = 0;
+  std::unique_ptr<PairSource> video_;
+  Pair before_;
+  std::int64_t frame_ = 0;
+  bool cut_ = false;
+};
 
 /// A corner of the board in a picture.
 struct BoardCorner {
@@ -72,12 +104,18 @@ class Calibrator {
   std::unique_ptr<State> state_;
 };
 
+/// How many disparities to search, from 0, so that depth begins at `near_m`: a multiple of 16, as many as matchers compare at
+/// once.
+///
+/// Errors  those of every rig; near_m not above zero
+Result<int> disparities_from(const Rig& rig, double near_m);
+
 /// What a rig can do, for its user.
 struct RigDescription {
   double common_degrees = 0;  // width of what both cameras see at 2 m
   double common_share = 0;    // of the left picture that the right camera sees, too, at 2 m
   Size rectified;             // size of the rectified pictures
-  int max_disparity = 0;      // to search, so that depth begins at `near_m`
+  int max_disparity = 0;      // disparities_from() `near_m`
   double near_m = 0;
   std::array<double, 3> step_m{};  // by how much depth changes with a quarter pixel of disparity, at 1, 2 and 3 m
 };

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "duoptic/detector.h"
 #include "duoptic/frame.h"
 #include "duoptic/person.h"
 #include "duoptic/rig.h"
@@ -46,6 +48,43 @@ void draw_hue(View<const Rgb8> src, View<Rgb8> dst);
 
 /// The cloud drawn from a camera moved sideways and up, so that a person sees its shape without a 3D program.
 Image<Rgb8> draw_cloud(View<const std::uint16_t> d_q4, View<const Rgb8> color, const Rectified& rectified, Size size);
+
+/// A camera on a sphere around a point that it looks at.
+///
+/// Units  rig frame; yaw to the right, pitch up; zoom 1: as large as the rig's own camera sees it
+struct Orbit {
+  double yaw_rad = -0.3, pitch_rad = 0.2, zoom = 1;
+  double middle_m = 2;  // of what is looked at, straight ahead of the rig
+  friend bool operator==(const Orbit&, const Orbit&) = default;
+};
+
+/// The orbit's camera for a picture of some size.
+class OrbitCamera {
+ public:
+  OrbitCamera(const Orbit& orbit, const Rectified& rectified, Size size);
+  /// x and y in its picture, px, and z in front of it, m; none behind the camera.
+  std::optional<Vec3> place(Vec3 p_in_rig_m) const;
+  double focal_px() const { return focal_px_; }
+  double middle_m() const { return middle_in_rig_m_.z; }
+
+ private:
+  Mat3 turn_;
+  Vec3 middle_in_rig_m_;
+  double distance_m_, focal_px_, cx_px_, cy_px_;
+};
+
+/// The depth that a quarter of the points is nearer than, metres; 0 without any.
+double foreground_m(View<const std::uint16_t> d_q4, const Rectified& rectified);
+
+/// Each point as a square as large as its pixel, what is nearest in front.
+///
+/// Shape  d_q4 and color H x W of the frame, dst of any size
+void draw_points(View<const std::uint16_t> d_q4, View<const Rgb8> color, const Rectified& rectified, const OrbitCamera& camera,
+                 View<Rgb8> dst);
+
+/// What a detector saw, over its picture: bones, points and boxes; the left side warm, the right one cold, pale what is
+/// probably hidden, hands with a colour a finger.
+void draw_people(std::span<const SeenPerson> people, View<Rgb8> picture);
 
 /// Persons as shapes over the raw left picture, in its pixels; broken where a joint is inferred, left out where it is lost.
 struct Shapes {

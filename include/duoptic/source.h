@@ -14,7 +14,7 @@
 namespace duo {
 
 enum class Next : std::uint8_t {
-  kPicture,  // one more
+  kNew,      // a new picture, pair or frame
   kEnd,      // no more
   kCut,      // no more, but the file says there should be: it was cut short; all whole pictures were given
   kNothing,  // live: none came for a while, a camera may be unplugged; ask again

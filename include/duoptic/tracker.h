@@ -28,6 +28,16 @@ struct Selection {
   std::vector<Click> clicks;           // each of its joints once, in any order
 };
 
+/// Reads clicks such as "right_hand=451,360"; a joint without a side, "hand=451,360", is that of `side` ("left" or "right").
+/// Gives a selection per skeleton, in the order in which they are named.
+///
+/// Errors  not JOINT=X,Y; no such joint, with those that there are; a joint twice or missing
+Result<std::vector<Selection>> parse_selections(const std::vector<std::string>& texts, const std::string& side,
+                                                std::span<const Skeleton* const> skeletons);
+
+/// The names of all joints of skeletons: "right_shoulder, right_elbow, …".
+std::string joint_names(std::span<const Skeleton* const> skeletons);
+
 struct TrackerSetup {
   Rig rig;
   Rectified rectified;  // of the frames to come

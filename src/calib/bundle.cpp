@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "calib/normal_equations.h"
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 
 namespace duo {
 namespace {

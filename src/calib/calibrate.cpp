@@ -13,7 +13,7 @@
 #include "calib/find_board.h"
 #include "calib/judge_bundle.h"
 #include "calib/start_bundle.h"
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 
 namespace duo {
 namespace {

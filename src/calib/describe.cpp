@@ -13,13 +13,23 @@ namespace {
 constexpr double kFar_m = 2;
 constexpr double kDisparityStep_px = 0.25;  // what matching tells apart on common surfaces
 
+Result<int> disparities_from(const Rectified& geometry, double near_m) {
+  constexpr int kLanes = 16, kMost = 1 << 20;
+  if (!(near_m > 0)) return rig_error("", "the nearest depth is {} m; it must be above zero", near_m);
+  return (static_cast<int>(std::min<double>(geometry.disparity_px(near_m), kMost)) / kLanes + 1) * kLanes;
+}
+
 }  // namespace
 
+Result<int> disparities_from(const Rig& rig, double near_m) {
+  DUO_TRY_ASSIGN(const Rectified geometry, rectified_geometry(rig, ""));
+  return disparities_from(geometry, near_m);
+}
+
 Result<RigDescription> describe_rig(const Rig& rig, double near_m) {
-  if (!(near_m > 0)) return rig_error("", "the nearest depth is {} m; it must be above zero", near_m);
   DUO_TRY_ASSIGN(const Rectified geometry, rectified_geometry(rig, ""));
   RigDescription out{.rectified = geometry.size, .near_m = near_m};
-  out.max_disparity = static_cast<int>(std::ceil(geometry.disparity_px(near_m))) + 1;
+  DUO_TRY_ASSIGN(out.max_disparity, disparities_from(geometry, near_m));
   const std::array<double, 3> depths_m = {1, 2, 3};
   for (std::size_t i = 0; i < depths_m.size(); ++i)
     out.step_m[i] = kDisparityStep_px * depths_m[i] * depths_m[i] / (geometry.focal_px * geometry.baseline_m);

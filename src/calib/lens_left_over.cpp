@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "calib/normal_equations.h"
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 
 namespace duo {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "calib/rig_formats.h"
 #include "calib/scene_pose.h"
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 
 namespace duo {
 namespace {

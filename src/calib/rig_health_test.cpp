@@ -25,7 +25,7 @@ class Pairs : public PairSource {
     given_ = true;
     into.left.pixels = left_.clone();
     into.right.pixels = right_.clone();
-    return Next::kPicture;
+    return Next::kNew;
   }
   std::string warning() const override { return {}; }
 

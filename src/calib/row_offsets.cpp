@@ -6,7 +6,7 @@
 
 #include "calib/lens_left_over.h"
 #include "calib/normal_equations.h"
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 
 namespace duo {
 namespace {

@@ -108,7 +108,7 @@ Result<SceneMatches> match_scene(PairSource& pairs, int threads, std::int64_t fa
       DUO_TRY_ASSIGN(next, pairs.next(pair));
     }
     scene.cut = next == Next::kCut;
-    if (next != Next::kPicture) break;
+    if (next != Next::kNew) break;
     if (i % step != 0) continue;
     matcher.add(pair, all);
     ++scene.pairs;

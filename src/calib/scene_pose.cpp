@@ -7,7 +7,7 @@
 
 #include "calib/normal_equations.h"
 #include "calib/rig_formats.h"
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 
 namespace duo {
 namespace {

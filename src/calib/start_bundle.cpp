@@ -6,7 +6,7 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 
 namespace duo {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/governor.h"
+#include "core/concurrency_throttle.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -18,56 +18,56 @@ constexpr std::int64_t kMs = 1'000'000;
 
 /// Frames of 30 ms of arithmetic; `took(threads)`: how long each takes. Returns the threads of each.
 template <class F>
-std::vector<int> frames(Governor& governor, int count, F took) {
+std::vector<int> frames(ConcurrencyThrottle& throttle, int count, F took) {
   std::vector<int> out;
   for (int i = 0; i < count; ++i) {
-    out.push_back(governor.threads());
-    governor.made(took(governor.threads()) * kMs, 30 * kMs);
+    out.push_back(throttle.threads());
+    throttle.made(took(throttle.threads()) * kMs, 30 * kMs);
   }
   return out;
 }
 
-TEST(Governor, KeepsAllThreadsThatHaveTheirCores) {
-  Governor governor(2);
-  EXPECT_EQ(frames(governor, 200, [](int threads) { return threads == 2 ? 18 : 30; }), std::vector(200, 2));
+TEST(ConcurrencyThrottle, KeepsAllThreadsThatHaveTheirCores) {
+  ConcurrencyThrottle throttle(2);
+  EXPECT_EQ(frames(throttle, 200, [](int threads) { return threads == 2 ? 18 : 30; }), std::vector(200, 2));
 }
 
 // A moment in which others have the cores: what rests comes back a while later, and would be missed until then.
-TEST(Governor, ThreeSlowFramesChangeNothing) {
-  Governor governor(2);
+TEST(ConcurrencyThrottle, ThreeSlowFramesChangeNothing) {
+  ConcurrencyThrottle throttle(2);
   int i = 0;
-  EXPECT_EQ(frames(governor, 50, [&](int) { return ++i >= 20 && i < 23 ? 60 : 18; }), std::vector(50, 2));
+  EXPECT_EQ(frames(throttle, 50, [&](int) { return ++i >= 20 && i < 23 ? 60 : 18; }), std::vector(50, 2));
 }
 
-TEST(Governor, OneThreadWhereTwoWaitForEachOther) {
-  Governor governor(2);
-  const auto threads = frames(governor, 1000, [](int n) { return n == 2 ? 150 : 50; });
+TEST(ConcurrencyThrottle, OneThreadWhereTwoWaitForEachOther) {
+  ConcurrencyThrottle throttle(2);
+  const auto threads = frames(throttle, 1000, [](int n) { return n == 2 ? 150 : 50; });
   EXPECT_EQ(threads[9], 1);
   // Two are tried again less and less often: a frame each time, as that alone takes as long as three of one thread.
   EXPECT_LT(std::count(threads.begin() + 9, threads.end(), 2), 10);
   EXPECT_GT(std::count(threads.begin() + 9, threads.end(), 2), 2);
 }
 
-TEST(Governor, AllComeBackWhenTheCoresAreFree) {
-  Governor governor(2);
-  frames(governor, 500, [](int n) { return n == 2 ? 150 : 50; });
+TEST(ConcurrencyThrottle, AllComeBackWhenTheCoresAreFree) {
+  ConcurrencyThrottle throttle(2);
+  frames(throttle, 500, [](int n) { return n == 2 ? 150 : 50; });
   // The one thread waits no longer: soon two are tried, and stay.
-  const auto threads = frames(governor, 80, [](int n) { return n == 2 ? 18 : 30; });
+  const auto threads = frames(throttle, 80, [](int n) { return n == 2 ? 18 : 30; });
   EXPECT_EQ(threads.back(), 2);
 }
 
-TEST(Governor, HalfOfManyIsTriedFirst) {
-  Governor governor(16);
+TEST(ConcurrencyThrottle, HalfOfManyIsTriedFirst) {
+  ConcurrencyThrottle throttle(16);
   // Four cores are free: the more threads, the longer it takes beyond them.
-  const auto threads = frames(governor, 400, [](int n) { return n <= 4 ? 32 / n : 8 * n / 4; });
+  const auto threads = frames(throttle, 400, [](int n) { return n <= 4 ? 32 / n : 8 * n / 4; });
   EXPECT_EQ(threads[0], 16);
   EXPECT_GT(std::count(threads.begin(), threads.end(), 4), 350);
 }
 
-TEST(Governor, ThreadsThatWaitByNatureStay) {
-  Governor governor(16);
+TEST(ConcurrencyThrottle, ThreadsThatWaitByNatureStay) {
+  ConcurrencyThrottle throttle(16);
   // Sixteen take as long as twice two would, and are the fastest all the same.
-  const auto threads = frames(governor, 400, [](int n) { return n == 16 ? 7 : n == 8 ? 9 : 30; });
+  const auto threads = frames(throttle, 400, [](int n) { return n == 16 ? 7 : n == 8 ? 9 : 30; });
   EXPECT_EQ(threads.back(), 16);
   EXPECT_LT(std::count(threads.begin() + 100, threads.end(), 8), 20);
 }

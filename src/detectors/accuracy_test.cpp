@@ -9,6 +9,7 @@
 #include "detectors/place.h"
 #include "detectors/see_points.h"
 #include "duoptic/source.h"
+#include "duoptic/statistics.h"
 #include "nets/net_run.h"
 #include "stages/crop_square16/crop_square16.h"
 #include "tests/agree.h"
@@ -31,7 +32,7 @@ void each_picture(F&& f) {
     Picture picture;
     for (int frame = 0;; ++frame) {
       const auto next = (*source)->next(picture);
-      if (!next || *next != Next::kPicture) break;
+      if (!next || *next != Next::kNew) break;
       if (frame % kEvery == 0) f(std::string(clip), frame, picture.pixels.view());
     }
   }
@@ -70,12 +71,6 @@ void write_crops(const std::filesystem::path& folder) {
     }
   });
   std::ofstream(folder / "crops.json") << nlohmann::json{{"body", bodies}, {"hand", hands}}.dump();
-}
-
-double percentile(std::vector<double>& values, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
 }
 
 /// Joints of the clips' truth, as points of a body.
@@ -160,16 +155,16 @@ TEST_P(Accuracy, LikeFloatingPoint) {
     }
   });
   ASSERT_EQ(used, reference.size());
-  std::printf("%s, %zu crops: raw %.3f px median, %.3f at 95 %%", model_.c_str(), used, percentile(raw_px, 0.5),
-              percentile(raw_px, 0.95));
-  EXPECT_LE(percentile(raw_px, 0.5), 0.12);
-  EXPECT_LE(percentile(raw_px, 0.95), 0.4);
-  EXPECT_LE(percentile(presence, 0.95), 0.03);
+  std::printf("%s, %zu crops: raw %.3f px median, %.3f at 95 %%", model_.c_str(), used, quantile(raw_px, 0.5),
+              quantile(raw_px, 0.95));
+  EXPECT_LE(quantile(raw_px, 0.5), 0.12);
+  EXPECT_LE(quantile(raw_px, 0.95), 0.4);
+  EXPECT_LE(quantile(presence, 0.95), 0.03);
   if (body_) {
     std::printf("; visible refined %.3f at 99 %%; visibility %.4f at 95 %%; to the truth %.4f times the floats'",
-                percentile(shown_px, 0.99), percentile(visibility, 0.95), error_px / float_error_px);
-    EXPECT_LE(percentile(shown_px, 0.99), 0.5);
-    EXPECT_LE(percentile(visibility, 0.95), 0.03);
+                quantile(shown_px, 0.99), quantile(visibility, 0.95), error_px / float_error_px);
+    EXPECT_LE(quantile(shown_px, 0.99), 0.5);
+    EXPECT_LE(quantile(visibility, 0.95), 0.03);
     EXPECT_NEAR(error_px / float_error_px, 1, 0.01);
   }
   std::printf("\n");

@@ -25,7 +25,7 @@ std::vector<Picture> pictures_of(const std::string& clip) {
   if (!source) return out;
   for (Picture picture;; picture = {}) {
     const auto next = (*source)->next(picture);
-    if (!next || *next != Next::kPicture) return out;
+    if (!next || *next != Next::kNew) return out;
     out.push_back(std::move(picture));
   }
 }

@@ -15,7 +15,7 @@
 
 namespace duo {
 
-SimdFrames::SimdFrames(const Prepared& prepared, int threads) : prepared_(prepared), pool_(threads), governor_(pool_.most()) {
+SimdFrames::SimdFrames(const Prepared& prepared, int threads) : prepared_(prepared), pool_(threads), throttle_(pool_.most()) {
   Matchers::make(pool_, prepared.matcher, match_setup(prepared), matcher_);
   if (prepared.setup.fill) filling_.emplace(prepared.size, prepared.setup.max_disparity);
   now_ = Image<std::uint8_t>(prepared.setup.size);
@@ -25,7 +25,7 @@ SimdFrames::SimdFrames(const Prepared& prepared, int threads) : prepared_(prepar
 void SimdFrames::make(const Pair& pair, std::span<const Window> windows, std::uint64_t turn, Frame& frame) {
   DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
   const Setup& setup = prepared_.setup;
-  pool_.use(governor_.threads());
+  pool_.use(throttle_.threads());
   frame.sequence = pair.sequence;
   frame.t_ns = pair.left.t_ns;
   frame.skew_ns = pair.right.t_ns - pair.left.t_ns;
@@ -50,7 +50,7 @@ void SimdFrames::make(const Pair& pair, std::span<const Window> windows, std::ui
   if (setup.wants.depth) simd::depth(pool_, disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
   timer_.stage("depth");
   const Pool::Effort effort = pool_.take_effort();
-  governor_.made(effort.wall_ns, effort.cpu_ns);
+  throttle_.made(effort.wall_ns, effort.cpu_ns);
 }
 
 /// Raw colour to what the matcher sees. Denoising comes before resampling: only there is noise independent from pixel to

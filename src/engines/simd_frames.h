@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/clock.h"
-#include "core/governor.h"
+#include "core/concurrency_throttle.h"
 #include "core/pool.h"
 #include "engines/filling.h"
 #include "engines/prepared.h"
@@ -33,7 +33,7 @@ class SimdFrames {
 
   const Prepared& prepared_;
   Pool pool_;
-  Governor governor_;
+  ConcurrencyThrottle throttle_;
   Matchers::Simd matcher_;
   std::optional<Filling> filling_;
   Image<std::uint8_t> now_, next_;  // one view on its way through the denoising

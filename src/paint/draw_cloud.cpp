@@ -8,7 +8,9 @@
 
 #include "core/check.h"
 #include "core/point.h"
+#include "core/rotation.h"
 #include "duoptic/paint.h"
+#include "duoptic/statistics.h"
 
 namespace duo {
 namespace {
@@ -23,15 +25,12 @@ struct Vertex {
 };
 
 template <class Get>
-double percentile(const std::vector<Vertex>& vertices, double share, const Get& get) {
+double vertex_quantile(const std::vector<Vertex>& vertices, double share, const Get& get) {
   std::vector<double> values;
   values.reserve(vertices.size());
   for (const Vertex& vertex : vertices)
     if (vertex.z_m > 0) values.push_back(get(vertex));
-  if (values.empty()) return 0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return values.empty() ? 0 : quantile(values, share);
 }
 
 /// Points seen from beside: the camera circles around the middle of the scene. u and v are tangents.
@@ -42,12 +41,8 @@ std::vector<Vertex> seen_from_beside(View<const std::uint16_t> d_q4, View<const 
     for (int x = 0; x < d_q4.width(); ++x)
       if (const auto p = point_at(d_q4, rectified, y, x)) depths_m.push_back(p->z);
   if (depths_m.empty()) return vertices;
-  std::nth_element(depths_m.begin(), depths_m.begin() + static_cast<std::ptrdiff_t>(depths_m.size() / 2), depths_m.end());
-  const double middle_m = depths_m[depths_m.size() / 2];
-
-  const double cy = std::cos(kYaw_rad), sy = std::sin(kYaw_rad), cp = std::cos(kPitch_rad), sp = std::sin(kPitch_rad);
-  const Mat3 yaw{{cy, 0, sy, 0, 1, 0, -sy, 0, cy}}, pitch{{1, 0, 0, 0, cp, -sp, 0, sp, cp}};
-  const Mat3 turn = pitch * yaw;
+  const double middle_m = median(depths_m);
+  const Mat3 turn = rotation_of({kPitch_rad, 0, 0}) * rotation_of({0, kYaw_rad, 0});
   const Vec3 middle_in_rig_m = {0, 0, middle_m};
   for (int y = 0; y < d_q4.height(); ++y)
     for (int x = 0; x < d_q4.width(); ++x) {
@@ -65,8 +60,8 @@ std::vector<Vertex> seen_from_beside(View<const std::uint16_t> d_q4, View<const 
 void fit(std::vector<Vertex>& vertices, Size size) {
   const auto u = [](const Vertex& vertex) { return vertex.u; };
   const auto v = [](const Vertex& vertex) { return vertex.v; };
-  const double u0 = percentile(vertices, 0.01, u), u1 = percentile(vertices, 0.99, u);
-  const double v0 = percentile(vertices, 0.01, v), v1 = percentile(vertices, 0.99, v);
+  const double u0 = vertex_quantile(vertices, 0.01, u), u1 = vertex_quantile(vertices, 0.99, u);
+  const double v0 = vertex_quantile(vertices, 0.01, v), v1 = vertex_quantile(vertices, 0.99, v);
   const double scale = 0.92 * std::min(size.width / std::max(u1 - u0, 1e-6), size.height / std::max(v1 - v0, 1e-6));
   for (Vertex& vertex : vertices) {
     vertex.u = (vertex.u - (u0 + u1) / 2) * scale + 0.5 * size.width;

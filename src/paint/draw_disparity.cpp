@@ -8,6 +8,7 @@
 
 #include "core/check.h"
 #include "duoptic/paint.h"
+#include "duoptic/statistics.h"
 #include "paint/legend.h"
 #include "paint/turbo.h"
 
@@ -47,12 +48,7 @@ DisparityRange disparity_range(View<const std::uint16_t> d_q4) {
     for (int x = 0; x < d_q4.width(); ++x)
       if (d_q4.at(y, x) != Disparity::kNone) known.push_back(d_q4.at(y, x));
   if (known.empty()) return {};
-  const auto percentile = [&](double share) {
-    const auto at = known.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(known.size() - 1));
-    std::nth_element(known.begin(), at, known.end());
-    return *at / 16.0;
-  };
-  const double far_px = percentile(0.01), near_px = percentile(0.99);
+  const double far_px = quantile(known, 0.01) / 16.0, near_px = quantile(known, 0.99) / 16.0;
   return {far_px, std::max(near_px, far_px + 1)};
 }
 

@@ -5,6 +5,8 @@ target_sources(duoptic PRIVATE
   ${dir}/draw_disparity.cpp
   ${dir}/draw_hue.cpp
   ${dir}/draw_panels.cpp
+  ${dir}/draw_people.cpp
+  ${dir}/draw_points.cpp
   ${dir}/draw_regions.cpp
   ${dir}/shapes.cpp)
 duoptic_test(paint/paint ${dir}/paint_test.cpp)

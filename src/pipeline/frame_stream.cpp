@@ -42,7 +42,7 @@ Result<void> FrameStream::read_all() {
   while (pairs_.wait_for_room()) {
     std::shared_ptr<Pair> pair = pool_.lend();
     DUO_TRY_ASSIGN(const Next next, source_->next(*pair));
-    if (next != Next::kPicture) {
+    if (next != Next::kNew) {
       end_ = next;
       break;
     }
@@ -58,16 +58,16 @@ Result<Next> FrameStream::take_pair(std::shared_ptr<Pair>& into) {
     return source_->next(*into);
   }
   DUO_TRY_ASSIGN(const Taken taken, pairs_.take(into));
-  return taken == Taken::kValue ? Next::kPicture : end_.load();
+  return taken == Taken::kValue ? Next::kNew : end_.load();
 }
 
 Result<Next> FrameStream::choose_pair(std::shared_ptr<Pair>& into) {
   while (true) {
     DUO_TRY_ASSIGN(const Next next, take_pair(into));
-    if (next != Next::kPicture) return next;
+    if (next != Next::kNew) return next;
     if (read_ == 0) start_ns_ = into->left.t_ns;
     const std::int64_t from_first = read_++ - choice_.first;
-    if (from_first >= 0 && from_first % choice_.every == 0) return Next::kPicture;
+    if (from_first >= 0 && from_first % choice_.every == 0) return Next::kNew;
     if (from_first + 1 >= 0 && (from_first + 1) % choice_.every == 0) align_.remember(*into);
     if (source_->live()) return Next::kNothing;  // it may be long: who waits may want to stop
   }
@@ -80,7 +80,7 @@ Result<void> FrameStream::match_all(const std::stop_token& stop) {
     while (!end && in_engine_ < ring_.size()) {
       Result<Next> next = choose_pair(item.pair);
       if (next && *next == Next::kNothing) break;
-      if (!next || *next != Next::kPicture) {
+      if (!next || *next != Next::kNew) {
         end = std::move(next);
         break;
       }
@@ -168,11 +168,11 @@ Result<Next> FrameStream::next(Matched& into) {
   taken_.frame.reset();  // back into their pools
   taken_.pair.reset();
   const std::lock_guard lock(engine_mutex_);
-  if (into.setup == setup_) return Next::kPicture;
+  if (into.setup == setup_) return Next::kNew;
   empty_engine();
   make_anew(into);
   refill_engine();
-  return Next::kPicture;
+  return Next::kNew;
 }
 
 Result<void> FrameStream::prepare(const Setup& setup, Matched& last) {

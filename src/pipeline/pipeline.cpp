@@ -27,6 +27,7 @@ struct Pipeline::State {
 
   std::unique_ptr<PairSource> waiting;  // until the first next()
   std::unique_ptr<FrameStream> frames;  // after the engine, which it uses to its end
+  Tap* tap = nullptr;                   // of frames
   Matched last;
   std::shared_ptr<const Pair> pair;  // last.pair
   std::vector<Person> people;
@@ -100,8 +101,9 @@ Result<void> Pipeline::State::start() {
   if (frames) return {};
   DUO_CHECK(waiting != nullptr);
   const int at_once = setup.frames.many_at_once && engine ? engine->in_flight() : 1;
-  DUO_TRY_ASSIGN(auto pairs, tapped(std::move(waiting), recording));
-  frames = std::make_unique<FrameStream>(std::move(pairs), engine.get(), at_once,
+  auto tapped = std::make_unique<Tap>(std::move(waiting), recording);
+  tap = tapped.get();
+  frames = std::make_unique<FrameStream>(std::move(tapped), engine.get(), at_once,
                                          FrameStream::Choice{setup.first, std::max<std::int64_t>(1, setup.every)});
   return frames->start();
 }
@@ -124,7 +126,7 @@ Result<Next> Pipeline::next() {
   State& s = *state_;
   DUO_TRY(s.start());
   DUO_TRY_ASSIGN(const Next next, s.frames->next(s.last));
-  if (next != Next::kPicture) return next;
+  if (next != Next::kNew) return next;
   s.pair = s.last.pair;
   if (s.tracker == nullptr) return next;
   const std::int64_t begin_ns = wall_ns();
@@ -236,7 +238,8 @@ std::vector<std::pair<std::string, std::int64_t>> Pipeline::dropped_by_sinks() c
 
 Result<void> Pipeline::record(const std::filesystem::path& path, const RecorderSetup& setup, double most_s) {
   DUO_TRY(state_->recording->start(path, setup, most_s));
-  return state_->start();  // a live source is recorded before anybody asks for a frame
+  DUO_TRY(state_->start());  // a live source is recorded before anybody asks for a frame
+  return state_->tap->read_all_pairs();
 }
 
 void Pipeline::stop_recording() { state_->recording->stop(); }

@@ -80,7 +80,7 @@ class Clip final : public PairSource {
     into.left.t_ns += round_ns;
     into.right.t_ns += round_ns;
     into.sequence = static_cast<std::uint64_t>(given_++);
-    return Next::kPicture;
+    return Next::kNew;
   }
 
  private:
@@ -112,7 +112,7 @@ std::vector<std::shared_ptr<const Frame>> frames_of(Pipeline& pipeline) {
   while (true) {
     const auto next = pipeline.next();
     EXPECT_TRUE(next) << next.error().what;
-    if (!next || *next != Next::kPicture) return out;
+    if (!next || *next != Next::kNew) return out;
     EXPECT_EQ(pipeline.frame()->sequence, pipeline.pair()->sequence);
     out.push_back(pipeline.frame());
   }
@@ -170,7 +170,7 @@ TEST(Pipeline, AlignsInTimeWithAndWithoutATracker) {
 TEST(Pipeline, PairsComeAsTheyWere) {
   Pipeline pipeline = opened(pipeline_setup());
   for (const Pair& want : clip()) {
-    ASSERT_EQ(*pipeline.next(), Next::kPicture);
+    ASSERT_EQ(*pipeline.next(), Next::kNew);
     const Pair& got = *pipeline.pair();
     for (int y = 0; y < kClipSize.height; ++y) {
       ASSERT_TRUE(std::equal(want.right.pixels.row(y), want.right.pixels.row(y) + kClipSize.width, got.right.pixels.row(y)));
@@ -201,7 +201,7 @@ TEST(Pipeline, OtherParametersOnTheWay) {
   for (const bool many : {false, true}) {
     Pipeline pipeline = opened(pipeline_setup(3, many));
     for (std::size_t i = 0; i < before.size(); ++i) {
-      ASSERT_EQ(*pipeline.next(), Next::kPicture);
+      ASSERT_EQ(*pipeline.next(), Next::kNew);
       const std::string who = (many ? "many, frame " : "frame ") + std::to_string(i);
       if (i == 4) {
         expect_same_maps(*before[i], *pipeline.frame(), who + " before");
@@ -220,10 +220,10 @@ TEST(Pipeline, OtherParametersOnTheWay) {
 TEST(Pipeline, AllocatesNothingPerFrame) {
   for (const bool many : {false, true}) {
     Pipeline pipeline = opened(pipeline_setup(2, many), std::make_unique<Clip>(60));
-    for (int i = 0; i < 20; ++i) ASSERT_EQ(*pipeline.next(), Next::kPicture);
+    for (int i = 0; i < 20; ++i) ASSERT_EQ(*pipeline.next(), Next::kNew);
     pipeline.wait();
     const long before = test::allocations;
-    for (int i = 0; i < 30; ++i) ASSERT_EQ(*pipeline.next(), Next::kPicture);
+    for (int i = 0; i < 30; ++i) ASSERT_EQ(*pipeline.next(), Next::kNew);
     EXPECT_EQ(test::allocations - before, 0) << (many ? "many at once" : "one at once");
   }
 }
@@ -255,7 +255,7 @@ TEST(Pipeline, ASinkThatFailsIsGivenUpAndNumbersGoOnAfterARestart) {
   ASSERT_TRUE(pipeline.add_sink("ended", std::make_unique<Counts>(ended)));
   for (int round = 0; round < 2; ++round) {
     for (int i = 0; i < 3; ++i) {
-      ASSERT_EQ(*pipeline.next(), Next::kPicture);
+      ASSERT_EQ(*pipeline.next(), Next::kNew);
       EXPECT_EQ(pipeline.tracked().number, i);
       EXPECT_EQ(pipeline.write().has_value(), round > 0 || i != 1);
     }
@@ -284,7 +284,7 @@ TEST(Pipeline, OfALiveSourceTheNewestAndAllAreRecorded) {
     const auto next = pipeline.next();
     ASSERT_TRUE(next) << next.error().what;
     if (*next == Next::kEnd) break;
-    if (*next != Next::kPicture) continue;
+    if (*next != Next::kNew) continue;
     numbers.push_back(pipeline.pair()->sequence);
     while (given < kLive) std::this_thread::sleep_for(1ms);  // looks at its first frame until all were given
   }
@@ -304,7 +304,7 @@ TEST(Pipeline, PairsAloneForWhoRecords) {
   Pipeline pipeline = opened(std::move(setup));
   ASSERT_TRUE(pipeline.record(folder / "clip.mkv", {.rig = clip_rig()}));
   int pairs = 0;
-  while (*pipeline.next() == Next::kPicture) {
+  while (*pipeline.next() == Next::kNew) {
     EXPECT_EQ(pipeline.frame(), nullptr);
     EXPECT_EQ(pipeline.pair()->sequence, static_cast<std::uint64_t>(pairs++));
   }
@@ -324,7 +324,7 @@ TEST(Pipeline, WhatASourceThrowsIsAnErrorAfterTheFramesBeforeIt) {
                                }));
     Result<Next> next = Next::kNothing;
     int frames = 0;
-    while ((next = pipeline.next()) && *next != Next::kEnd) frames += *next == Next::kPicture;
+    while ((next = pipeline.next()) && *next != Next::kEnd) frames += *next == Next::kNew;
     ASSERT_FALSE(next);
     EXPECT_NE(next.error().what.find("out of memory"), std::string::npos) << next.error().what;
     EXPECT_LE(frames, 3);
@@ -338,7 +338,7 @@ TEST(Pipeline, MayBeLeftAtAnyTime) {
   for (int frames = 0; frames < 4; ++frames)
     for (const bool live : {false, true}) {
       Pipeline pipeline = opened(pipeline_setup(3, true), std::make_unique<Clip>(kClipPairs, live));
-      for (int i = 0; i < frames && *pipeline.next() == Next::kPicture;) i += 1;
+      for (int i = 0; i < frames && *pipeline.next() == Next::kNew;) i += 1;
       kept = pipeline.frame();
     }
   EXPECT_TRUE(kept != nullptr && !kept->disparity.d_q4.empty());

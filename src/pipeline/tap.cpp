@@ -1,75 +1,9 @@
 #include "pipeline/tap.h"
 
-#include <atomic>
 #include <chrono>
 #include <utility>
 
-#include "duoptic/bounded_queue.h"
-#include "duoptic/worker.h"
-
 namespace duo {
-namespace {
-
-class Tap : public PairSource {
- public:
-  Tap(std::unique_ptr<PairSource> source, std::shared_ptr<Recording> recording)
-      : source_(std::move(source)), recording_(std::move(recording)) {}
-
-  Size size() const override { return source_->size(); }
-  std::int64_t count() const override { return source_->count(); }
-  bool still() const override { return source_->still(); }
-  double frame_s() const override { return source_->frame_s(); }
-  std::optional<Rig> rig() const override { return source_->rig(); }
-  bool live() const override { return source_->live(); }
-  std::int64_t dropped() const override { return source_->dropped(); }
-  std::string warning() const override { return source_->warning(); }
-  Result<Next> next(Pair& into) override {
-    DUO_TRY_ASSIGN(const Next next, source_->next(into));
-    if (next == Next::kPicture) recording_->take(into, source_->dropped());
-    return next;
-  }
-
- private:
-  std::unique_ptr<PairSource> source_;
-  std::shared_ptr<Recording> recording_;
-};
-
-class LiveTap final : public Tap {
- public:
-  using Tap::Tap;
-  Result<void> start() {
-    DUO_TRY_ASSIGN(reader_, Worker::start(
-                                "take the next pair", [this](const std::stop_token& stop) { return read_all(stop); },
-                                [this](const Result<void>& result) { pairs_.close(result); }));
-    return {};
-  }
-  std::int64_t dropped() const override { return Tap::dropped() + pairs_.dropped(); }
-  Result<Next> next(Pair& into) override {
-    DUO_TRY_ASSIGN(const Taken taken, pairs_.take(into, std::chrono::milliseconds(500)));
-    if (taken == Taken::kClosed) return end_.load();
-    return taken == Taken::kValue ? Next::kPicture : Next::kNothing;
-  }
-
- private:
-  Result<void> read_all(const std::stop_token& stop) {
-    for (Pair pair; !stop.stop_requested();) {
-      DUO_TRY_ASSIGN(const Next next, Tap::next(pair));
-      if (next == Next::kNothing) continue;
-      if (next != Next::kPicture) {
-        end_ = next;
-        break;
-      }
-      if (!pairs_.put(pair)) break;
-    }
-    return {};
-  }
-
-  BoundedQueue<Pair> pairs_{1, WhenFull::kDropOldest};
-  std::atomic<Next> end_ = Next::kEnd;
-  Worker reader_;  // last: it uses all of the above
-};
-
-}  // namespace
 
 Result<void> Recording::start(const std::filesystem::path& path, const RecorderSetup& setup, double most_s) {
   const std::lock_guard lock(file_mutex_);
@@ -139,11 +73,49 @@ void Recording::fail(const Error& error) {
   if (!first_failure_) first_failure_ = error;
 }
 
-Result<std::unique_ptr<PairSource>> tapped(std::unique_ptr<PairSource> pairs, std::shared_ptr<Recording> recording) {
-  if (!pairs->live()) return std::unique_ptr<PairSource>(std::make_unique<Tap>(std::move(pairs), std::move(recording)));
-  auto tap = std::make_unique<LiveTap>(std::move(pairs), std::move(recording));
-  DUO_TRY(tap->start());
-  return std::unique_ptr<PairSource>(std::move(tap));
+Tap::Tap(std::unique_ptr<PairSource> source, std::shared_ptr<Recording> recording)
+    : source_(std::move(source)), recording_(std::move(recording)) {}
+
+Result<void> Tap::read_all_pairs() {
+  if (!live() || reader_.started()) return {};
+  reads_ = true;
+  auto reader = Worker::start(
+      "take the next pair", [this](const std::stop_token& stop) { return read_all(stop); },
+      [this](const Result<void>& result) { pairs_.close(result); });
+  reads_ = reader.has_value();
+  if (!reader) return reader.error();
+  reader_ = std::move(*reader);
+  return {};
+}
+
+Result<Next> Tap::next(Pair& into) {
+  if (!reads_) {
+    const std::lock_guard lock(source_mutex_);
+    if (!reads_) return read(into);
+  }
+  DUO_TRY_ASSIGN(const Taken taken, pairs_.take(into, std::chrono::milliseconds(500)));
+  if (taken == Taken::kClosed) return end_.load();
+  return taken == Taken::kValue ? Next::kNew : Next::kNothing;
+}
+
+Result<Next> Tap::read(Pair& into) {
+  DUO_TRY_ASSIGN(const Next next, source_->next(into));
+  if (next == Next::kNew) recording_->take(into, source_->dropped());
+  return next;
+}
+
+Result<void> Tap::read_all(const std::stop_token& stop) {
+  for (Pair pair; !stop.stop_requested();) {
+    const std::lock_guard lock(source_mutex_);  // who asked before this thread began still waits for a pair
+    DUO_TRY_ASSIGN(const Next next, read(pair));
+    if (next == Next::kNothing) continue;
+    if (next != Next::kNew) {
+      end_ = next;
+      break;
+    }
+    if (!pairs_.put(pair)) break;
+  }
+  return {};
 }
 
 }  // namespace duo

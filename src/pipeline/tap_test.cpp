@@ -26,7 +26,9 @@ class Cameras final : public PairSource {
   bool still() const override { return false; }
   bool live() const override { return true; }
   std::string warning() const override { return {}; }
+  const std::thread::id* asked_by() const { return &asked_by_; }
   Result<Next> next(Pair& into) override {
+    asked_by_ = std::this_thread::get_id();
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     if (given_ == kPairs) return Next::kNothing;
     for (Picture Pair::*side : {&Pair::left, &Pair::right}) {
@@ -42,11 +44,12 @@ class Cameras final : public PairSource {
       picture.sequence = static_cast<std::uint64_t>(given_);
     }
     into.sequence = static_cast<std::uint64_t>(given_++);
-    return Next::kPicture;
+    return Next::kNew;
   }
 
  private:
   int given_ = 0;
+  std::thread::id asked_by_;
 };
 
 /// Recordings go to the working folder.
@@ -64,7 +67,7 @@ class RecordingOnTheWay : public ::testing::Test {
   void play(PairSource& tap) {
     for (int i = 0; i < 1000 && recording_->status().pairs < kPairs && recording_->status().on; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    ASSERT_EQ(*tap.next(pair_), Next::kPicture);
+    ASSERT_EQ(*tap.next(pair_), Next::kNew);
   }
 
   const test::TempFolder folder_;
@@ -75,10 +78,11 @@ class RecordingOnTheWay : public ::testing::Test {
 
 TEST_F(RecordingOnTheWay, HasThePairsThatNobodyTookInTime) {
   ASSERT_TRUE(recording_->start("clip.mkv", {}, 0));
-  const auto tap = *tapped(std::make_unique<Cameras>(), recording_);
-  play(*tap);
+  Tap tap(std::make_unique<Cameras>(), recording_);
+  ASSERT_TRUE(tap.read_all_pairs());
+  play(tap);
   EXPECT_EQ(pair_.sequence, kPairs - 1U);  // the newest
-  EXPECT_EQ(tap->dropped(), kPairs - 1);
+  EXPECT_EQ(tap.dropped(), kPairs - 1);
   recording_->stop();
   const RecordingStatus status = recording_->status();
   EXPECT_FALSE(status.on);
@@ -96,10 +100,28 @@ TEST_F(RecordingOnTheWay, HasThePairsThatNobodyTookInTime) {
   EXPECT_TRUE(fs::exists(status.name));
 }
 
+TEST_F(RecordingOnTheWay, NeedsNoThreadBeforeThereIsOne) {
+  auto cameras = std::make_unique<Cameras>();
+  const std::thread::id* asked_by = cameras->asked_by();
+  Tap tap(std::move(cameras), recording_);
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(*tap.next(pair_), Next::kNew);
+  EXPECT_EQ(*asked_by, std::this_thread::get_id());
+
+  ASSERT_TRUE(recording_->start("clip.mkv", {}, 0));
+  ASSERT_TRUE(tap.read_all_pairs());
+  for (int i = 0; i < 1000 && recording_->status().pairs < kPairs - 3; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ASSERT_EQ(*tap.next(pair_), Next::kNew);
+  EXPECT_EQ(pair_.sequence, kPairs - 1U);
+  recording_->stop();
+  EXPECT_EQ(report_of(recording_->status()).pairs, kPairs - 3);
+}
+
 TEST_F(RecordingOnTheWay, EndsByItselfAtItsLength) {
   ASSERT_TRUE(recording_->start("clip.mkv", {}, 0.3));
-  const auto tap = *tapped(std::make_unique<Cameras>(), recording_);
-  play(*tap);
+  Tap tap(std::make_unique<Cameras>(), recording_);
+  ASSERT_TRUE(tap.read_all_pairs());
+  play(tap);
   const RecordingStatus status = recording_->status();
   EXPECT_FALSE(status.on);
   EXPECT_EQ(status.pairs, 10);  // the pairs at 0 to 9 thirtieths of a second
@@ -115,8 +137,9 @@ TEST_F(RecordingOnTheWay, FullDiskKeepsWhatWasWritten) {
   setrlimit(RLIMIT_FSIZE, &small);
   ASSERT_TRUE(recording_->start("clip.mkv", {}, 0));
   {
-    const auto tap = *tapped(std::make_unique<Cameras>(), recording_);
-    play(*tap);  // what is watched goes on
+    Tap tap(std::make_unique<Cameras>(), recording_);
+    ASSERT_TRUE(tap.read_all_pairs());
+    play(tap);  // what is watched goes on
   }
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, old_handler);

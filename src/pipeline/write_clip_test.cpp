@@ -38,7 +38,7 @@ TEST(WriteClip, ReadsBackAsItWasRendered) {
   Pair pair;
   for (int i = 0; i < 12; ++i) {
     const auto next = (*pairs)->next(pair);
-    ASSERT_TRUE(next.has_value() && *next == Next::kPicture) << i;
+    ASSERT_TRUE(next.has_value() && *next == Next::kNew) << i;
     const SyntheticClipFrame frame = clip->frame(i);
     double off = 0;
     for (int y = 0; y < 48; ++y)

@@ -9,7 +9,8 @@
 #include "body/bone_turns.h"
 #include "core/file.h"
 #include "duoptic/sink.h"
-#include "sinks/joint_text.h"
+#include "duoptic/statistics.h"
+#include "sinks/text_values.h"
 
 namespace duo {
 namespace {
@@ -76,12 +77,7 @@ Vec3 Track::offset_m(std::size_t joint) const {
   std::vector<double> lengths_m;
   for (const auto& places : frames_)
     if (!places.empty()) lengths_m.push_back(norm(places[joint] - places[parent]));
-  double length_m = kUnseen_m;
-  if (!lengths_m.empty()) {
-    const auto middle = lengths_m.begin() + static_cast<std::ptrdiff_t>(lengths_m.size() / 2);
-    std::nth_element(lengths_m.begin(), middle, lengths_m.end());
-    length_m = *middle;
-  }
+  const double length_m = lengths_m.empty() ? kUnseen_m : median(lengths_m);
   return length_m * rest_direction(skeleton_.joints[joint].id, BodyAxes::kRightHanded);
 }
 

@@ -4,7 +4,7 @@
 
 #include "core/file.h"
 #include "duoptic/sink.h"
-#include "sinks/joint_text.h"
+#include "sinks/text_values.h"
 
 namespace duo {
 namespace {

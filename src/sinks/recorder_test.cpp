@@ -195,7 +195,7 @@ TEST(Recorder, ReportAndFilesOfItsOwn) {
   Picture picture;
   for (int t = 0; t < 9; ++t) {
     const auto next = (*left)->next(picture);
-    ASSERT_TRUE(next && *next == Next::kPicture);
+    ASSERT_TRUE(next && *next == Next::kNew);
     EXPECT_EQ(picture.jpeg, jpeg_of(t));
   }
   EXPECT_EQ(bytes_of(dir / "t.csv").substr(0, 111),

@@ -104,7 +104,7 @@ TEST(VideoWriter, WhatWasWrittenIsRead) {
   Picture picture;
   for (const Rgb8& want : colors) {
     const auto next = (*source)->next(picture);
-    ASSERT_TRUE(next && *next == Next::kPicture);
+    ASSERT_TRUE(next && *next == Next::kNew);
     EXPECT_EQ(picture.t_ns / 1'000'000, 40 * static_cast<std::int64_t>(picture.sequence));
     const Rgb8 got = picture.pixels.at(31, 47);
     EXPECT_NEAR(got.r, want.r, 6);

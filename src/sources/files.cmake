@@ -4,6 +4,7 @@ pkg_check_modules(LIBAV REQUIRED IMPORTED_TARGET libavformat libavcodec libswsca
 pkg_check_modules(CURL REQUIRED IMPORTED_TARGET libcurl)
 target_link_libraries(duoptic PRIVATE PkgConfig::LIBAV PkgConfig::CURL)
 target_sources(duoptic PRIVATE
+  ${PROJECT_SOURCE_DIR}/src/sources/board_pictures.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/open_source.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/gst_process.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/http_bytes.cpp
@@ -17,7 +18,7 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/video.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/with_skew.cpp)
 duoptic_test(sources/files ${PROJECT_SOURCE_DIR}/src/sources/files_test.cpp)
-foreach(file camera clock_model decode device look modes system_calls)
+foreach(file camera clock_model controls decode device modes system_calls)
   target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/camera/${file}.cpp)
 endforeach()
 target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/live/live_pairs.cpp ${PROJECT_SOURCE_DIR}/src/sources/live/pairing.cpp)

@@ -18,7 +18,7 @@ using namespace test;  // NOLINT: the writers of tests/write_media.h
 
 struct Read {
   bool opened = false;
-  Next end = Next::kPicture;
+  Next end = Next::kNew;
   std::vector<std::vector<Rgb8>> pictures;
   std::string error;
 };
@@ -39,7 +39,7 @@ Read read_all(const fs::path& path) {
       return out;
     }
     out.end = *next;
-    if (*next != Next::kPicture) return out;
+    if (*next != Next::kNew) return out;
     auto& pixels = out.pictures.emplace_back();
     for (int y = 0; y < picture.pixels.height(); ++y)
       pixels.insert(pixels.end(), picture.pixels.row(y), picture.pixels.row(y) + picture.pixels.width());
@@ -213,7 +213,7 @@ TEST(Pairs, CutAndShorterFilesAreNamed) {
   Pair pair;
   int given = 0;
   auto next = (*pairs)->next(pair);
-  for (; next && *next == Next::kPicture; next = (*pairs)->next(pair)) ++given;
+  for (; next && *next == Next::kNew; next = (*pairs)->next(pair)) ++given;
   ASSERT_TRUE(next);
   EXPECT_EQ(*next, Next::kCut);
   EXPECT_GT(given, 0);

@@ -26,18 +26,18 @@ class InRealTime final : public PairSource {
   Result<Next> next(Pair& into) override {
     if (!ahead_) {
       DUO_TRY_ASSIGN(ahead_, pairs_->next(next_));
-      if (*ahead_ == Next::kPicture) file_start_ns_ = next_.left.t_ns, start_ns_ = wall_ns();
+      if (*ahead_ == Next::kNew) file_start_ns_ = next_.left.t_ns, start_ns_ = wall_ns();
     }
-    if (*ahead_ != Next::kPicture) return *ahead_;
+    if (*ahead_ != Next::kNew) return *ahead_;
     wait_until_due();
     if (!due()) return Next::kNothing;
     do {
       std::swap(into, next_);
       DUO_TRY_ASSIGN(ahead_, pairs_->next(next_));
-    } while (*ahead_ == Next::kPicture && due() && ++dropped_);
+    } while (*ahead_ == Next::kNew && due() && ++dropped_);
     into.left.t_ns += start_ns_ - file_start_ns_;
     into.right.t_ns += start_ns_ - file_start_ns_;
-    return Next::kPicture;
+    return Next::kNew;
   }
 
  private:

@@ -40,9 +40,9 @@ class TwoFiles final : public PairSource {
     DUO_TRY_ASSIGN(const Next left, left_->next(into.left));
     DUO_TRY_ASSIGN(const Next right, right_->next(into.right));
     into.sequence = given_;
-    if (left == Next::kPicture && right == Next::kPicture) {
+    if (left == Next::kNew && right == Next::kNew) {
       ++given_;
-      return Next::kPicture;
+      return Next::kNew;
     }
     if (left == Next::kCut || right == Next::kCut) {
       warning_ = cut_text(names_[left == Next::kCut ? 0 : 1], given_);
@@ -75,11 +75,11 @@ class SideBySide final : public PairSource {
   Result<Next> next(Pair& into) override {
     DUO_TRY_ASSIGN(const Next next, both_->next(picture_));
     if (next == Next::kCut) warning_ = cut_text(name_, given_);
-    if (next != Next::kPicture) return next;
+    if (next != Next::kNew) return next;
     take_half(0, into.left);
     take_half(size().width, into.right);
     into.sequence = given_++;
-    return Next::kPicture;
+    return Next::kNew;
   }
 
  private:

@@ -94,7 +94,7 @@ class PictureFile final : public Source {
     into.jpeg.clear();
     into.t_ns = 0;
     into.sequence = 0;
-    return Next::kPicture;
+    return Next::kNew;
   }
 
  private:

@@ -7,8 +7,8 @@
 #include <mutex>
 #include <utility>
 
-#include "duoptic/bounded_queue.h"
 #include "core/clock.h"
+#include "duoptic/bounded_queue.h"
 #include "duoptic/worker.h"
 #include "sources/stream_input.h"
 
@@ -111,13 +111,13 @@ class Stream final : public Source {
   Result<Next> next(Picture& into) override {
     if (std::exchange(has_first_, false)) {
       std::swap(into, first_);
-      return Next::kPicture;
+      return Next::kNew;
     }
     DUO_TRY_ASSIGN(const Taken taken, state_->pictures.take(into, kStreamPatience));
     if (taken != Taken::kValue) return Next::kNothing;
     if (into.pixels.size() != size_)
       return Error{ErrorCode::kUnsupported, fmt::format("cannot read stream {}: its pictures change size", state_->name)};
-    return Next::kPicture;
+    return Next::kNew;
   }
 
  private:

@@ -84,7 +84,7 @@ int pictures_within(Source& stream, std::chrono::milliseconds time, int most) {
   for (const auto start = std::chrono::steady_clock::now(); std::chrono::steady_clock::now() - start < time && given < most;) {
     const auto next = stream.next(picture);
     EXPECT_TRUE(next);
-    given += next && *next == Next::kPicture;
+    given += next && *next == Next::kNew;
   }
   return given;
 }

@@ -211,7 +211,7 @@ Result<Next> VideoFile::next(Picture& into) {
     into.t_ns = mark->t_ns;
     into.sequence = mark->sequence;
   }
-  return Next::kPicture;
+  return Next::kNew;
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ class WithSkew final : public PairSource {
 
   Result<Next> next(Pair& into) override {
     DUO_TRY_ASSIGN(const Next next, pairs_->next(into));
-    if (next == Next::kPicture) into.right.t_ns += skew_ns_;
+    if (next == Next::kNew) into.right.t_ns += skew_ns_;
     return next;
   }
 

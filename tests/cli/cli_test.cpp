@@ -183,7 +183,9 @@ TEST_F(Cli, NearSaysHowFarToSearch) {
     return nlohmann::json::parse(ended.out, nullptr, false)["max_disparity_px"].get<int>();
   };
   const int half = searched("0.5"), one = searched("1");
-  EXPECT_NEAR(half - 1, 2 * (one - 1), 2);  // one more than the disparity there, rounded up
+  EXPECT_EQ(half % 16, 0);
+  EXPECT_GT(half, 2 * (one - 16));  // the disparity at a metre is at least one - 16
+  EXPECT_LE(half, 2 * one + 16);
   const std::string pair = "depth left.png right.png -o out ";
   expect_failure(pair + "--near 1", kUsage, "--rig");
   expect_failure(pair + "--rig rig.json --near 1 --max-disparity 32", kUsage, "--max-disparity");

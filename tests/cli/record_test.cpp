@@ -224,7 +224,7 @@ TEST(RecordWithSkew, DepthAndTrackHaveTheSameDisparities) {
     auto pipeline = Pipeline::open(std::move(*pairs), setup);
     EXPECT_TRUE(pipeline);
     std::vector<std::shared_ptr<const Frame>> frames;
-    while (*pipeline->next() == Next::kPicture) frames.push_back(pipeline->frame());
+    while (*pipeline->next() == Next::kNew) frames.push_back(pipeline->frame());
     return frames;
   };
   const auto tracked = frames_of(true), as_they_came = frames_of(false);

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <thread>
 
+#include "duoptic/statistics.h"
 #include "duoptic/synthetic.h"
 #include "tool.h"
 
@@ -63,12 +64,6 @@ class Tracking {
  private:
   pid_t process_ = -1;
 };
-
-double quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 TEST(Soak, MemoryStandsStillAndLinesAreInTime) {
   using namespace std::chrono_literals;

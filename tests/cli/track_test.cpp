@@ -264,7 +264,7 @@ TEST_F(Track, EvalClipAgainstATruthFile) {
   put(at("clip/truth.json"), "{");
   fails("clip", "truth.json");
   fs::remove(at("clip/truth.json"));
-  fails("clip", "truth.json: there is no such file");
+  fails("clip", "truth.json': there is no such file");
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ void read_view(const std::filesystem::path& path, int track) {
   Picture picture;
   for (int i = 0; i < kMost; ++i) {
     const auto next = (*view)->next(picture);
-    if (!next || *next != Next::kPicture) return;
+    if (!next || *next != Next::kNew) return;
     DUO_CHECK(picture.pixels.size() == (*view)->size());
   }
 }

@@ -36,13 +36,13 @@ std::string time_of_day() {
 class CameraSource final : public Source {
  public:
   CameraSource(const SystemCalls& system, std::string name, const CameraWish& wish, CameraDevice device,
-               std::shared_ptr<SharedLook> look, bool leads)
+               std::shared_ptr<SharedControls> controls, bool leads)
       : system_(system),
         name_(std::move(name)),
         wish_(wish),
         camera_(device.info()),
         format_(device.format()),
-        look_(std::move(look)),
+        controls_(std::move(controls)),
         leads_(leads) {
     run(std::move(device));
   }
@@ -78,7 +78,7 @@ class CameraSource final : public Source {
   const CameraWish wish_;
   const CameraInfo camera_;
   const CameraFormat format_;
-  const std::shared_ptr<SharedLook> look_;
+  const std::shared_ptr<SharedControls> controls_;
   const bool leads_;
 
   std::optional<CameraDevice> device_;  // none while it is away
@@ -87,7 +87,7 @@ class CameraSource final : public Source {
   TimeNs since_ns_ = 0;            // of the last picture, or of the start
   TimeNs first_ns_ = 0;            // of the first picture since the start; 0 before it
   std::optional<TimeNs> away_ns_;  // since when, until it gives a picture again
-  bool locked_ = false;            // the look, since the start
+  bool locked_ = false;            // the controls, since the start
   std::int64_t number_ = -1;       // of the last buffer, counted as the driver counts, on from before an absence
   std::uint32_t sequence_ = 0;
   std::int64_t given_number_ = -1;
@@ -130,17 +130,17 @@ bool CameraSource::come_back() {
   return false;
 }
 
-/// Once the leader's automatics have settled, all cameras of one look get it; one that was away gets it again.
+/// Once the leader's automatics have settled, all cameras get the same controls; one that was away gets them again.
 void CameraSource::settle_look() {
-  if (!look_ || locked_ || first_ns_ == 0) return;
-  if (leads_ && !look_->get() && system_.now_ns() - first_ns_ >= kSettle_ns) look_->give(read_look(*device_));
-  const auto look = look_->get();
-  if (!look) return;
+  if (!controls_ || locked_ || first_ns_ == 0) return;
+  if (leads_ && !controls_->get() && system_.now_ns() - first_ns_ >= kSettle_ns) controls_->give(read_controls(*device_));
+  const auto controls = controls_->get();
+  if (!controls) return;
   locked_ = true;
-  const std::string missing = lock_look(*device_, *look);
-  say(note_, missing.empty()
-                 ? ""
-                 : fmt::format("{} ({}) cannot be locked to the left camera's look: {}", name_, camera_.name, missing));
+  const std::string missing = lock_controls(*device_, *controls);
+  say(note_, missing.empty() ? ""
+                             : fmt::format("{} ({}) cannot be locked to the left camera's exposure and colours: {}", name_,
+                                           camera_.name, missing));
 }
 
 /// Waits for a buffer and passes over those that have a newer one behind them. False when there is none, or the camera left.
@@ -204,7 +204,7 @@ Result<Next> CameraSource::next(Picture& into) {
     dropped_ += number_ - given_number_ - 1;
     given_number_ = number_;
     into.sequence = static_cast<std::uint64_t>(number_);
-    return Next::kPicture;
+    return Next::kNew;
   }
   return Next::kNothing;
 }
@@ -262,10 +262,10 @@ Result<std::array<std::unique_ptr<Source>, 2>> open_cameras(const SystemCalls& s
     if (left_runs && right_runs) break;
     if (!try_raw) return no_bandwidth(left_runs ? right : left, false);
   }
-  const auto look = std::make_shared<SharedLook>();
+  const auto controls = std::make_shared<SharedControls>();
   return std::array<std::unique_ptr<Source>, 2>{
-      std::make_unique<CameraSource>(system, left, wish, std::move(first), look, true),
-      std::make_unique<CameraSource>(system, right, wish, std::move(second), look, false)};
+      std::make_unique<CameraSource>(system, left, wish, std::move(first), controls, true),
+      std::make_unique<CameraSource>(system, right, wish, std::move(second), controls, false)};
 }
 
 }  // namespace duo

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "duoptic/source.h"
-#include "sources/camera/look.h"
+#include "sources/camera/controls.h"
 #include "sources/camera/system_calls.h"
 
 namespace duo {

@@ -36,7 +36,7 @@ bool picture_of(Source& camera, const Desk& desk, Picture& into) {
   for (const TimeNs start = desk.now(); desk.now() - start < 3000 * kMs;) {
     const auto next = camera.next(into);
     if (!next) return false;
-    if (*next == Next::kPicture) return true;
+    if (*next == Next::kNew) return true;
   }
   return false;
 }

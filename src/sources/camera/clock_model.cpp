@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 
 namespace duo {
 namespace {

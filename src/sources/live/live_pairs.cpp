@@ -7,8 +7,8 @@
 #include <mutex>
 #include <utility>
 
-#include "duoptic/bounded_queue.h"
 #include "core/check.h"
+#include "duoptic/bounded_queue.h"
 #include "duoptic/worker.h"
 #include "sources/live/pairing.h"
 
@@ -48,7 +48,7 @@ class LivePairs final : public PairSource {
   Result<Next> next(Pair& into) override {
     DUO_TRY_ASSIGN(const Taken taken, pairs_.take(into, std::chrono::milliseconds(500)));
     if (taken == Taken::kClosed) return end_.load();
-    return taken == Taken::kValue ? Next::kPicture : Next::kNothing;
+    return taken == Taken::kValue ? Next::kNew : Next::kNothing;
   }
 
  private:
@@ -59,7 +59,7 @@ class LivePairs final : public PairSource {
     while (!stop.stop_requested()) {
       DUO_TRY_ASSIGN(const Next next, source.next(picture));
       if (next == Next::kNothing) continue;
-      if (next != Next::kPicture) {
+      if (next != Next::kNew) {
         end_ = next;
         break;
       }

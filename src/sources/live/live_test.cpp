@@ -110,7 +110,7 @@ TEST(LivePairs, RightPairsWithTheirTrueSkewThroughJitterLossesAndUnplugging) {
     while (desk.now() < end_ns) {
       const auto next = pairs->next(pair);
       ASSERT_TRUE(next) << next.error().what;
-      if (*next != Next::kPicture || !judge) continue;
+      if (*next != Next::kNew || !judge) continue;
       ++given;
       EXPECT_EQ(number_in(pair.left), number_in(pair.right));
       right += std::abs(pair.right.t_ns - pair.left.t_ns - kSkew) < 1 * kMs;
@@ -125,11 +125,11 @@ TEST(LivePairs, RightPairsWithTheirTrueSkewThroughJitterLossesAndUnplugging) {
   for (int i = 0; i < 100 && pairs->warning().find("camera:2 is away") == std::string::npos; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_NE(pairs->warning().find("camera:2 is away since"), std::string::npos) << pairs->warning();
-  while (*pairs->next(pair) == Next::kPicture) {
+  while (*pairs->next(pair) == Next::kNew) {
   }  // the last one may not be taken yet
   desk.plugged[1] = true;
   const TimeNs back_ns = desk.now();
-  while (*pairs->next(pair) != Next::kPicture) ASSERT_LT(desk.now() - back_ns, 20'000 * kMs);  // 2 s of the machine's
+  while (*pairs->next(pair) != Next::kNew) ASSERT_LT(desk.now() - back_ns, 20'000 * kMs);  // 2 s of the machine's
   std::printf("a pair again %.2f s after the camera was plugged in\n", static_cast<double>(desk.now() - back_ns) * 1e-9);
   EXPECT_NE(pairs->warning().find("camera:2 is back since"), std::string::npos) << pairs->warning();
 }
@@ -151,7 +151,7 @@ TEST(LivePairs, BothUnpluggedOverAndOver) {
     plugged = true;
     if (i % 50 != 0) continue;
     int tries = 0;
-    while (*pairs->next(pair) != Next::kPicture) ASSERT_LT(++tries, 20) << pairs->warning();
+    while (*pairs->next(pair) != Next::kNew) ASSERT_LT(++tries, 20) << pairs->warning();
   }
   desk.plugged[1] = false;
 }

@@ -311,13 +311,13 @@ TEST(SyntheticClip, Live) {
     EXPECT_NE((*source)->warning().find("rendering"), std::string::npos);
     next = (*source)->next(pair);
   }
-  ASSERT_TRUE(next && *next == Next::kPicture);
+  ASSERT_TRUE(next && *next == Next::kNew);
   EXPECT_EQ((*source)->warning(), "");
   EXPECT_EQ(pair.sequence, 0u);
   EXPECT_EQ(pixels(pair.right.pixels), pixels(clip->frame(0).pair.right.pixels));
   const TimeNs start_ns = pair.left.t_ns;
   std::this_thread::sleep_for(std::chrono::milliseconds(430));  // on the way back: 10 pairs there, the last of them once
-  ASSERT_EQ(*(*source)->next(pair), Next::kPicture);
+  ASSERT_EQ(*(*source)->next(pair), Next::kNew);
   ASSERT_GE(pair.sequence, 12u);
   EXPECT_EQ((*source)->dropped(), static_cast<std::int64_t>(pair.sequence) - 1);
   EXPECT_NEAR(static_cast<double>(pair.left.t_ns - start_ns), static_cast<double>(pair.sequence) * 1e9 / 30, 100);

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "duoptic/worker.h"
 #include "duoptic/synthetic.h"
+#include "duoptic/worker.h"
 
 namespace duo {
 namespace {
@@ -35,8 +35,8 @@ class LiveClip final : public PairSource {
         pairs_(static_cast<std::size_t>(all_)) {}
 
   Result<void> start() {
-    DUO_TRY_ASSIGN(renderer_, Worker::start("render the synthetic person",
-                                            [this](const std::stop_token& stop) { return render(stop); }));
+    DUO_TRY_ASSIGN(renderer_,
+                   Worker::start("render the synthetic person", [this](const std::stop_token& stop) { return render(stop); }));
     return {};
   }
 
@@ -60,7 +60,7 @@ class LiveClip final : public PairSource {
     dropped_ += due - last_ - 1;
     last_ = due;
     show(due, into);
-    return Next::kPicture;
+    return Next::kNew;
   }
 
  private:
@@ -88,7 +88,7 @@ class LiveClip final : public PairSource {
   SyntheticClip clip_;
   const Size size_;
   const Rig rig_;
-  const int all_;  // pairs
+  const int all_;            // pairs
   std::vector<Pair> pairs_;  // the renderer's until it has ended
   std::atomic<int> rendered_ = 0;
   std::optional<Clock::time_point> start_;

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <vector>
 
+#include "duoptic/statistics.h"
 #include "sources/synthetic/lens.h"
 #include "sources/synthetic/noise.h"
 #include "sources/synthetic/render.h"
@@ -212,10 +213,6 @@ TEST(SyntheticPicture, RawDepthAgreesWithTheRig) {
     }
   ASSERT_GT(right_place.size(), 120000U);
   // The median passes over what the right camera cannot see; exposure, vignetting and noise differ.
-  const auto median = [](std::vector<double>& v) {
-    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-    return v[v.size() / 2];
-  };
   EXPECT_LT(median(right_place), 5);
   EXPECT_GT(median(wrong_place), 1.7 * median(right_place));
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stages/align_time/align_time.h"
+
 namespace duo::arm {
 namespace {
 
@@ -131,7 +133,8 @@ void Arm::follow_hand_outside(const Grid& grid) {
 // A joint that moves along the baseline by v dt between the two pictures seems z v dt / b off in depth; the pictures were put
 // to one moment, and a share of that is left. In which direction the speed is wrong nobody knows, so all of it counts.
 double Arm::skew_sigma_m(const Scene& scene, const TrackedJoint& joint) const {
-  return params_.skew_left * joint.p.z * norm(joint.step) / frame_s_ * std::abs(scene.skew_s) / scene.grid.camera.baseline_m;
+  return ref::AlignTime::kErrorLeft * joint.p.z * norm(joint.step) / frame_s_ * std::abs(scene.skew_s) /
+         scene.grid.camera.baseline_m;
 }
 
 void Arm::update_hand(const Scene& scene, const Prediction& predicted, const std::optional<Candidate>& seen) {

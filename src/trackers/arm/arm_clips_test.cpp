@@ -10,6 +10,7 @@
 
 #include "duoptic/engine.h"
 #include "duoptic/source.h"
+#include "duoptic/statistics.h"
 #include "duoptic/tracker.h"
 #include "tests/allocations.h"
 #include "tests/data.h"
@@ -93,7 +94,7 @@ class Clip {
     Pair pair;
     for (const TrueArms& truth : truth_) {
       const auto next = pairs_->next(pair);
-      ASSERT_TRUE(next && *next == Next::kPicture);
+      ASSERT_TRUE(next && *next == Next::kNew);
       if (!started && !std::all_of(truth.arms.begin(), truth.arms.begin() + static_cast<std::ptrdiff_t>(arms), all_visible))
         continue;
       engine_->submit(pair);
@@ -151,10 +152,7 @@ struct Scores {
     ++seen;
     within += error_m < 3 * joint.sigma_m();
   }
-  double median_mm() {
-    std::nth_element(errors_m.begin(), errors_m.begin() + static_cast<std::ptrdiff_t>(errors_m.size() / 2), errors_m.end());
-    return 1000 * errors_m[errors_m.size() / 2];
-  }
+  double median_mm() { return 1000 * median(errors_m); }
   double lost_share() const { return lost / static_cast<double>(errors_m.size()); }
   double within_share() const { return within / static_cast<double>(std::max(1, seen)); }
 };

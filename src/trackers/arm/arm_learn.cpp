@@ -1,7 +1,7 @@
 // What the arm learns while it is seen: the rest of the body, colours, the background, new patches.
 #include <algorithm>
 
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 #include "trackers/arm/arm.h"
 
 namespace duo::arm {

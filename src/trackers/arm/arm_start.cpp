@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 #include "trackers/arm/arm.h"
 
 namespace duo::arm {

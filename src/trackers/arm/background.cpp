@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 
 namespace duo::arm {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "core/rotation.h"
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 #include "trackers/arm/torso.h"
 
 namespace duo::arm {

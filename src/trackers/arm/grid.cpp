@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 
 namespace duo::arm {
 namespace {

@@ -42,7 +42,6 @@ struct Params {
   double hand_depth_sigmas = 0.7;                            // a hand is many cells, but their errors agree
   double hand_cut_sigma_m = 0.07, elbow_cut_sigma_m = 0.05;  // added where the picture's border cuts the hand off
   double hand_lag = 0.15;                                    // sigma added per metre that the hand moved since the last frame
-  double skew_left = 0.25;                                   // of the skew's error, where both pictures were put to one moment
 };
 
 }  // namespace duo::arm

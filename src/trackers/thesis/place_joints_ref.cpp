@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/check.h"
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 #include "trackers/thesis/place_joints.h"
 
 namespace duo::ref {

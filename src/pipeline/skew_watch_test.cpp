@@ -1,9 +1,9 @@
 // The cost of skew by numbers worked out by hand, and when it is worth a word.
-#include "skew_watch.h"
+#include "duoptic/skew_watch.h"
 
 #include <gtest/gtest.h>
 
-namespace duo::app {
+namespace duo {
 namespace {
 
 TEST(Skew, DepthErrorByHand) {
@@ -27,16 +27,16 @@ std::optional<std::string> told(SkewWatch& watch, double t_s, double x_m, double
 
 TEST(Skew, AWarningWhereItMattersAndNotTooOften) {
   SkewWatch watch(0.125);
-  EXPECT_FALSE(told(watch, 0, 0, 10));       // no speed yet
-  EXPECT_FALSE(told(watch, 0.1, 0.01, 10));  // 0.07 m/s, two thirds of the step's 0.1, x 10 ms: 11 mm
-  const auto warning = told(watch, 0.2, 0.11, 10);
-  ASSERT_TRUE(warning);  // 0.07 + 2/3 (1 - 0.07) m/s: 110 mm, of which 0.3 are left
-  EXPECT_NE(warning->find("10.0 ms after"), std::string::npos) << *warning;
+  EXPECT_FALSE(told(watch, 0, 0, 12));       // no speed yet
+  EXPECT_FALSE(told(watch, 0.1, 0.01, 12));  // 0.07 m/s, two thirds of the step's 0.1, x 12 ms: 13 mm
+  const auto warning = told(watch, 0.2, 0.11, 12);
+  ASSERT_TRUE(warning);  // 0.07 + 2/3 (1 - 0.07) m/s: 132 mm, of which a quarter is left
+  EXPECT_NE(warning->find("12.0 ms after"), std::string::npos) << *warning;
   EXPECT_NE(warning->find("hand moves sideways at 0.7 m/s"), std::string::npos) << *warning;
   EXPECT_NE(warning->find("33 mm"), std::string::npos) << *warning;
-  EXPECT_FALSE(told(watch, 0.3, 0.21, 10));  // said already
+  EXPECT_FALSE(told(watch, 0.3, 0.21, 12));  // said already
   EXPECT_FALSE(told(watch, 10.3, 1.21, 1));  // 0.1 m/s
-  EXPECT_TRUE(told(watch, 10.4, 1.31, -10));
+  EXPECT_TRUE(told(watch, 10.4, 1.31, -12));
 }
 
 TEST(Skew, OnlyWhatIsSeenAndApartInTimeCounts) {
@@ -48,4 +48,4 @@ TEST(Skew, OnlyWhatIsSeenAndApartInTimeCounts) {
 }
 
 }  // namespace
-}  // namespace duo::app
+}  // namespace duo

@@ -1,21 +1,14 @@
 // The scorer of clips against numbers worked out by hand.
-#include "clip_score.h"
+#include "duoptic/evaluation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace duo::app {
+namespace duo {
 namespace {
 
 constexpr JointState kSeen = JointState::kSeen, kInferred = JointState::kInferred, kLost = JointState::kLost;
-
-TEST(Percentile, TakesOneOfTheValues) {
-  EXPECT_FALSE(percentile({}, 0.5));
-  EXPECT_EQ(*percentile({7}, 0.95), 7);
-  EXPECT_EQ(*percentile({4, 1, 3, 2}, 0.5), 2);      // index floor(1.5)
-  EXPECT_EQ(*percentile({5, 4, 3, 2, 1}, 0.95), 4);  // index floor(3.8)
-}
 
 TEST(JointScore, ByHand) {
   const JointScore s = score_joint({
@@ -133,4 +126,4 @@ TEST(DepthScore, TurnsTheRayIntoTheRawCamera) {
 }
 
 }  // namespace
-}  // namespace duo::app
+}  // namespace duo

@@ -1,12 +1,12 @@
-#include "score.h"
+#include "duoptic/evaluation.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace duo::app {
+namespace duo {
 namespace {
 
-BadPercent bad_percent(View<const float> d_px, const Scene& scene) {
+BadPercent bad_percent(View<const float> d_px, const StereoScene& scene) {
   const Image<std::uint8_t>* regions[3] = {&scene.regions.nonocc, &scene.regions.all, &scene.regions.disc};
   std::array<std::array<std::int64_t, 3>, 3> bad{};
   std::array<std::int64_t, 3> total{};
@@ -16,7 +16,7 @@ BadPercent bad_percent(View<const float> d_px, const Scene& scene) {
       for (std::size_t r = 0; r < 3; ++r) {
         if (regions[r]->at(y, x) == 0) continue;
         ++total[r];
-        for (std::size_t t = 0; t < 3; ++t) bad[t][r] += d < 0 || error > kThresholdsPx[t];
+        for (std::size_t t = 0; t < 3; ++t) bad[t][r] += d < 0 || error > kBadThresholds_px[t];
       }
     }
   BadPercent out{};
@@ -28,7 +28,7 @@ BadPercent bad_percent(View<const float> d_px, const Scene& scene) {
 
 }  // namespace
 
-Image<float> to_px(View<const std::uint16_t> d_q4) {
+Image<float> disparity_as_px(View<const std::uint16_t> d_q4) {
   Image<float> out(d_q4.size());
   for (int y = 0; y < out.height(); ++y)
     for (int x = 0; x < out.width(); ++x)
@@ -60,8 +60,8 @@ void fill_rows(View<float> d_px) {
   }
 }
 
-Score score(View<const float> d_px, const Scene& scene) {
-  Score out;
+DisparityScore score_disparity(View<const float> d_px, const StereoScene& scene) {
+  DisparityScore out;
   out.bad_holes = bad_percent(d_px, scene);
   Image<float> filled(d_px.size());
   for (int y = 0; y < d_px.height(); ++y) std::copy_n(d_px.row(y), d_px.width(), filled.row(y));
@@ -82,4 +82,4 @@ Score score(View<const float> d_px, const Scene& scene) {
   return out;
 }
 
-}  // namespace duo::app
+}  // namespace duo

@@ -1,9 +1,11 @@
-#include "clip_score.h"
+#include "duoptic/evaluation.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace duo::app {
+#include "duoptic/statistics.h"
+
+namespace duo {
 namespace {
 
 std::optional<double> percent(std::int64_t part, std::int64_t whole) {
@@ -11,7 +13,7 @@ std::optional<double> percent(std::int64_t part, std::int64_t whole) {
   return 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-bool is_good(const JointSample& s) { return s.state != JointState::kLost && s.error_mm <= kBad_mm; }
+bool is_good(const JointSample& s) { return s.state != JointState::kLost && s.error_mm <= kBadJoint_mm; }
 
 void score_recovery(const std::vector<JointSample>& samples, JointScore& score) {
   int hidden = 0, waited = 0;
@@ -22,7 +24,7 @@ void score_recovery(const std::vector<JointSample>& samples, JointScore& score) 
       ++hidden;
       continue;
     }
-    if (hidden >= kHidden && !waiting) {
+    if (hidden >= kHiddenFrames && !waiting) {
       waiting = true;
       waited = 0;
     }
@@ -41,14 +43,11 @@ void score_recovery(const std::vector<JointSample>& samples, JointScore& score) 
   }
 }
 
-}  // namespace
-
 std::optional<double> percentile(std::vector<double> values, double share) {
-  if (values.empty()) return {};
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return values.empty() ? std::nullopt : std::optional(quantile(values, share));
 }
+
+}  // namespace
 
 JointScore score_joint(const std::vector<JointSample>& samples) {
   std::vector<double> visible_mm, hidden_mm;
@@ -111,4 +110,4 @@ std::optional<DepthScore> DepthTally::score() const {
                     *percentile(signed_px_, 0.5), percentile(background_signed_px_, 0.5).value_or(0)};
 }
 
-}  // namespace duo::app
+}  // namespace duo

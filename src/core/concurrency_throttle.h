@@ -10,9 +10,13 @@ namespace duo {
 /// waiting, and fewer threads are faster. When frames take twice as long as they would without waiting, half of the threads are
 /// tried for some frames and kept if the frames get faster. Later more threads are tried again; each try that does not pay
 /// doubles the time to the next one.
-class Governor {
+///
+/// Source  concurrency throttling by measured times (Curtis-Maury, Dzierwa, Antonopoulos, Nikolopoulos, "Online
+/// power-performance
+///         adaptation of multithreaded programs using hardware event-based prediction", 2006); the rule is ours
+class ConcurrencyThrottle {
  public:
-  explicit Governor(int threads) : all_(threads), now_(threads) {}
+  explicit ConcurrencyThrottle(int threads) : all_(threads), now_(threads) {}
 
   /// Of the next frame.
   int threads() const { return now_; }
@@ -23,7 +27,8 @@ class Governor {
     const double wall = static_cast<double>(wall_ns), waiting = wall * now_ / static_cast<double>(cpu_ns);
     if (tried_ > 0) return judge(wall, waiting);
     wall_ += (wall - wall_) / (wall_ > 0 ? kSmooth : 1);
-    waiting_ += (std::min(waiting, 1.5 * most_waiting_) - waiting_) / kSmooth;  // clamped: one long stall cannot cause a change by itself
+    waiting_ += (std::min(waiting, 1.5 * most_waiting_) - waiting_) /
+                kSmooth;  // clamped: one long stall cannot cause a change by itself
     rest_ -= waiting < kQuiet ? kSooner : 1;
     if (now_ > 1 && waiting_ > most_waiting_)
       try_out(now_ / 2);

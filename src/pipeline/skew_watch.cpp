@@ -1,11 +1,13 @@
-#include "skew_watch.h"
+#include "duoptic/skew_watch.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace duo::app {
+#include "stages/align_time/align_time.h"
+
+namespace duo {
 
 double skew_depth_error_m(double z_m, double speed_m_s, double skew_s, double baseline_m) {
   return z_m * speed_m_s * skew_s / baseline_m;
@@ -13,7 +15,6 @@ double skew_depth_error_m(double z_m, double speed_m_s, double skew_s, double ba
 
 std::optional<std::string> SkewWatch::see(const TrackedFrame& frame) {
   constexpr double kLeastError_m = 0.03, kQuiet_s = 10, kForget_s = 60;
-  constexpr double kLeft = 0.3;       // of the error, once the pictures were put to one moment (see stages/align_time)
   constexpr double kSmooth_s = 0.15;  // from frame to frame the speed would mostly be noise
   const double skew_s = static_cast<double>(frame.frame->skew_ns) * 1e-9;
   std::optional<std::string> warning;
@@ -29,7 +30,8 @@ std::optional<std::string> SkewWatch::see(const TrackedFrame& frame) {
       if (now.valid && before.valid && dt_s > 0) {
         const double step_m_s = (now.x_m - before.x_m) / dt_s;
         now.speed_m_s = before.speed_m_s + std::min(1.0, dt_s / kSmooth_s) * (step_m_s - before.speed_m_s);
-        const double error_m = kLeft * std::abs(skew_depth_error_m(joint.p_in_rig_m.z, now.speed_m_s, skew_s, baseline_m_));
+        const double error_m =
+            ref::AlignTime::kErrorLeft * std::abs(skew_depth_error_m(joint.p_in_rig_m.z, now.speed_m_s, skew_s, baseline_m_));
         if (error_m > worst_m && error_m > joint.sigma_m()) {
           worst_m = error_m;
           warning = fmt::format(
@@ -45,4 +47,4 @@ std::optional<std::string> SkewWatch::see(const TrackedFrame& frame) {
   return warning;
 }
 
-}  // namespace duo::app
+}  // namespace duo

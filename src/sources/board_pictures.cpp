@@ -1,5 +1,3 @@
-#include "board_pictures.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +5,9 @@
 #include <cstdlib>
 #include <map>
 
-namespace duo::app {
+#include "duoptic/calibrate.h"
+
+namespace duo {
 namespace fs = std::filesystem;
 
 namespace {
@@ -100,7 +100,7 @@ Result<bool> BoardPictures::next_still(Pair& into, std::string& name) {
   for (int i = 0; i < kWindow; ++i) {
     DUO_TRY_ASSIGN(const Next next, video_->next(now));
     cut_ = cut_ || next == Next::kCut;
-    if (next != Next::kPicture) break;
+    if (next != Next::kNew) break;
     const double moved =
         std::max(difference(now.left.pixels, before_.left.pixels), difference(now.right.pixels, before_.right.pixels));
     before_.left.pixels = now.left.pixels.clone(), before_.right.pixels = now.right.pixels.clone();
@@ -114,4 +114,4 @@ Result<bool> BoardPictures::next_still(Pair& into, std::string& name) {
   return any;
 }
 
-}  // namespace duo::app
+}  // namespace duo

@@ -1,10 +1,10 @@
-#include "perturb.h"
+#include "duoptic/evaluation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
-namespace duo::app {
+namespace duo {
 namespace {
 
 constexpr Perturbation kPerturbations[] = {
@@ -62,4 +62,4 @@ Pair perturb(const Pair& pair, const Perturbation& how) {
   return out;
 }
 
-}  // namespace duo::app
+}  // namespace duo

@@ -1,4 +1,4 @@
-#include "scene.h"
+#include "duoptic/evaluation.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 
 #include "duoptic/engine.h"
 #include "duoptic/source.h"
-#include "json_file.h"
+#include "evaluation/json_file.h"
 
-namespace duo::app {
+namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,9 +92,9 @@ Result<Meta> load_meta(const fs::path& path) {
 
 }  // namespace
 
-Regions derive_regions(const Image<float>& truth_px, int border_px) {
+SceneRegions regions_of_truth(const Image<float>& truth_px, int border_px) {
   const int w = truth_px.width(), h = truth_px.height();
-  Regions out{Image<std::uint8_t>({w, h}), Image<std::uint8_t>({w, h}), Image<std::uint8_t>({w, h})};
+  SceneRegions out{Image<std::uint8_t>({w, h}), Image<std::uint8_t>({w, h}), Image<std::uint8_t>({w, h})};
   const Image<float> carried = carry_to_right(truth_px);
   Image<std::uint8_t> edge({w, h});
   for (int y = 0; y < h; ++y)
@@ -143,16 +143,16 @@ Result<std::vector<fs::path>> find_scenes(const std::vector<fs::path>& paths) {
   return scenes;
 }
 
-Result<Scene> load_scene(const fs::path& folder) {
+Result<StereoScene> load_scene(const fs::path& folder) {
   DUO_TRY_ASSIGN(const Meta meta, load_meta(folder / "meta.json"));
-  Scene scene;
+  StereoScene scene;
   scene.name = fs::weakly_canonical(folder).filename().string();
   scene.max_disparity = meta.max_disparity;
   DUO_TRY_ASSIGN(scene.pair.left, load_picture(folder / "left.png", {}));
   const Size size = scene.pair.left.pixels.size();
   DUO_TRY_ASSIGN(scene.pair.right, load_picture(folder / "right.png", size));
   DUO_TRY_ASSIGN(scene.truth_px, load_truth(folder / "disp_left.png", size, meta.scale));
-  scene.regions = derive_regions(scene.truth_px, meta.border_px);
+  scene.regions = regions_of_truth(scene.truth_px, meta.border_px);
   if (fs::exists(folder / "mask_nonocc.png") && fs::exists(folder / "mask_disc.png")) {
     DUO_TRY_ASSIGN(scene.regions.nonocc, load_mask(folder / "mask_nonocc.png", scene.regions.all, 255));
     DUO_TRY_ASSIGN(scene.regions.disc, load_mask(folder / "mask_disc.png", scene.regions.all, 255));
@@ -160,4 +160,4 @@ Result<Scene> load_scene(const fs::path& folder) {
   return scene;
 }
 
-}  // namespace duo::app
+}  // namespace duo

@@ -1,10 +1,10 @@
-#include "draw_people.h"
-
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace duo::app {
+#include "duoptic/paint.h"
+
+namespace duo {
 namespace {
 
 using enum BodyPoint;
@@ -76,4 +76,4 @@ void draw_people(std::span<const SeenPerson> people, View<Rgb8> picture) {
   }
 }
 
-}  // namespace duo::app
+}  // namespace duo

@@ -12,31 +12,31 @@ namespace duo {
 /// What a camera's automatics settled on; none where the camera lacks the control.
 ///
 /// Units   exposure in 100 us, white balance in K, gain in the camera's own
-struct CameraLook {
+struct CameraControls {
   std::optional<int> exposure, gain, white_balance;
 };
 
-CameraLook read_look(const CameraDevice& camera);
+CameraControls read_controls(const CameraDevice& camera);
 
 /// Turns the automatics off and sets these values. What could not be done comes back as words for a warning; empty when the
-/// camera now looks like that.
-std::string lock_look(CameraDevice& camera, const CameraLook& look);
+/// camera has these values now.
+std::string lock_controls(CameraDevice& camera, const CameraControls& controls);
 
-/// One look for several cameras, each in its thread: the leader gives it, all take it.
-class SharedLook {
+/// The same controls for several cameras, each in its thread: the leader gives them, all take them.
+class SharedControls {
  public:
-  void give(const CameraLook& look) {
+  void give(const CameraControls& controls) {
     const std::lock_guard lock(mutex_);
-    if (!look_) look_ = look;
+    if (!controls_) controls_ = controls;
   }
-  std::optional<CameraLook> get() const {
+  std::optional<CameraControls> get() const {
     const std::lock_guard lock(mutex_);
-    return look_;
+    return controls_;
   }
 
  private:
   mutable std::mutex mutex_;
-  std::optional<CameraLook> look_;
+  std::optional<CameraControls> controls_;
 };
 
 }  // namespace duo

@@ -1,4 +1,4 @@
-#include "sources/camera/look.h"
+#include "sources/camera/controls.h"
 
 #include <fmt/format.h>
 #include <linux/videodev2.h>
@@ -33,22 +33,22 @@ void stop(CameraDevice& camera, std::uint32_t id, int off, const char* name, std
 
 }  // namespace
 
-CameraLook read_look(const CameraDevice& camera) {
+CameraControls read_controls(const CameraDevice& camera) {
   return {value_of(camera, V4L2_CID_EXPOSURE_ABSOLUTE), value_of(camera, V4L2_CID_GAIN),
           value_of(camera, V4L2_CID_WHITE_BALANCE_TEMPERATURE)};
 }
 
-std::string lock_look(CameraDevice& camera, const CameraLook& look) {
+std::string lock_controls(CameraDevice& camera, const CameraControls& controls) {
   std::string missing;
   // Automatics first: their values are read only, or are overwritten, while they are on.
   stop(camera, V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL, "exposure", missing);
   stop(camera, V4L2_CID_EXPOSURE_AUTO_PRIORITY, 0, "frame rate", missing);
   stop(camera, V4L2_CID_AUTOGAIN, 0, "gain", missing);
   stop(camera, V4L2_CID_AUTO_WHITE_BALANCE, 0, "white balance", missing);
-  lock(camera, V4L2_CID_EXPOSURE_ABSOLUTE, look.exposure, "exposure", missing);
-  lock(camera, V4L2_CID_GAIN, look.gain, "gain", missing);
-  lock(camera, V4L2_CID_WHITE_BALANCE_TEMPERATURE, look.white_balance, "white balance", missing);
-  if (!look.exposure && !camera.control(V4L2_CID_EXPOSURE_AUTO))
+  lock(camera, V4L2_CID_EXPOSURE_ABSOLUTE, controls.exposure, "exposure", missing);
+  lock(camera, V4L2_CID_GAIN, controls.gain, "gain", missing);
+  lock(camera, V4L2_CID_WHITE_BALANCE_TEMPERATURE, controls.white_balance, "white balance", missing);
+  if (!controls.exposure && !camera.control(V4L2_CID_EXPOSURE_AUTO))
     missing += missing.empty() ? "no manual exposure" : ", no manual exposure";
   return missing;
 }

@@ -1,4 +1,4 @@
-#include "clip.h"
+#include "duoptic/evaluation.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,9 +6,9 @@
 #include <algorithm>
 
 #include "duoptic/sink.h"
-#include "json_file.h"
+#include "evaluation/json_file.h"
 
-namespace duo::app {
+namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,7 +76,7 @@ Result<ClipTruth> load_clip(const fs::path& folder) {
   return clip;
 }
 
-Result<DepthTruth> load_depth(const fs::path& folder, std::int64_t frame) {
+Result<DepthTruth> load_depth_truth(const fs::path& folder, std::int64_t frame) {
   const fs::path depth = folder / fmt::format("depth/depth_{:04}.png", frame);
   const fs::path figure = folder / fmt::format("depth/figure_{:04}.png", frame);
   DepthTruth truth;
@@ -91,4 +91,4 @@ Result<DepthTruth> load_depth(const fs::path& folder, std::int64_t frame) {
   return truth;
 }
 
-}  // namespace duo::app
+}  // namespace duo

@@ -1,11 +1,11 @@
-#include "truth.h"
-
 #include <cmath>
 #include <vector>
 
-#include "timing.h"
+#include "core/lens.h"
+#include "duoptic/evaluation.h"
+#include "duoptic/statistics.h"
 
-namespace duo::app {
+namespace duo {
 namespace {
 
 /// Counts pixels that should have a disparity, that have one, and how far off these are.
@@ -17,7 +17,7 @@ class Tally {
     bad_ += error_px > 1.0;
     depth_errors_.push_back(depth_error);
   }
-  Accuracy accuracy() const {
+  RenderedAccuracy accuracy() {
     const double found = static_cast<double>(depth_errors_.size());
     if (found == 0) return {};
     return {100 * static_cast<double>(bad_) / found, 100 * found / static_cast<double>(pixels_), 100 * median(depth_errors_)};
@@ -28,23 +28,11 @@ class Tally {
   std::vector<double> depth_errors_;
 };
 
-struct Pixel {
-  double x_px, y_px;
-};
-
-Pixel project(const Camera& camera, Vec3 p_in_camera_m) {
-  const auto& [k1, k2, p1, p2, k3, k4, k5, k6] = camera.distortion;
-  const double x = p_in_camera_m.x / p_in_camera_m.z, y = p_in_camera_m.y / p_in_camera_m.z, r2 = x * x + y * y;
-  const double radial = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)));
-  const double u = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x), v = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y;
-  return {camera.fx_px * u + camera.cx_px, camera.fy_px * v + camera.cy_px};
-}
-
 double disparity_px(std::uint16_t d_q4) { return d_q4 / 16.0; }
 
 }  // namespace
 
-Accuracy ideal_accuracy(const Frame& frame, const SyntheticPair& ideal) {
+RenderedAccuracy ideal_accuracy(const Frame& frame, const SyntheticPair& ideal) {
   Tally tally;
   for (int y = 0; y < ideal.disparity_px.height(); ++y)
     for (int x = 0; x < ideal.disparity_px.width(); ++x) {
@@ -60,9 +48,10 @@ Accuracy ideal_accuracy(const Frame& frame, const SyntheticPair& ideal) {
   return tally.accuracy();
 }
 
-Accuracy raw_accuracy(const Frame& frame, const Rectified& rectified, const SyntheticPair& raw) {
+RenderedAccuracy raw_accuracy(const Frame& frame, const Rectified& rectified, const SyntheticPair& raw) {
   Tally tally;
   const Mat3 left_from_rig = transposed(rectified.rig_from_left);
+  const Lens lens(raw.rig.left);
   for (int y = 0; y < rectified.size.height; ++y)
     for (int x = 0; x < rectified.size.width; ++x) {
       if (frame.left_inside.at(y, x) == 0) continue;
@@ -73,8 +62,9 @@ Accuracy raw_accuracy(const Frame& frame, const Rectified& rectified, const Synt
       }
       const double z = rectified.depth_m(disparity_px(d_q4));
       const Vec3 p_in_left_m = left_from_rig * rectified.unproject({double(x), double(y)}, z);
-      const Pixel at = project(raw.rig.left, p_in_left_m);
-      const long column = std::lround(at.x_px), row = std::lround(at.y_px);
+      const auto at = lens.pixel_of(p_in_left_m);
+      if (!at) continue;
+      const long column = std::lround(at->x), row = std::lround(at->y);
       if (column < 0 || row < 0 || column >= raw.depth_left_m.width() || row >= raw.depth_left_m.height()) continue;
       const double truth_m = raw.depth_left_m.at(static_cast<int>(row), static_cast<int>(column));
       if (!(truth_m > 0)) continue;
@@ -85,4 +75,4 @@ Accuracy raw_accuracy(const Frame& frame, const Rectified& rectified, const Synt
   return tally.accuracy();
 }
 
-}  // namespace duo::app
+}  // namespace duo

@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "core/clock.h"
+#include "duoptic/evaluation.h"
+
+namespace duo {
+namespace {
+
+/// A click on each joint, moved by `jitter_px` in a direction of its own, the same in every run; the ends of limbs come first.
+Selection clicks(const Skeleton& skeleton, const FrameTruth& truth, double jitter_px, std::mt19937& random) {
+  Selection selection{&skeleton, {}};
+  for (std::size_t j = skeleton.joints.size(); j-- > 0;) {
+    const JointTruth& joint = *truth[static_cast<std::size_t>(skeleton.joints[j].id)];
+    const double angle_rad = 2 * std::numbers::pi * static_cast<double>(random()) / 4294967296.0;
+    selection.clicks.push_back(
+        {skeleton.joints[j].id, joint.u_px + jitter_px * std::cos(angle_rad), joint.v_px + jitter_px * std::sin(angle_rad)});
+  }
+  return selection;
+}
+
+/// A joint that nobody has is lost.
+JointSample sample(const JointTruth& truth, JointId id, std::span<const Person> people, const Mat3& rig_from_left) {
+  for (const Person& person : people)
+    if (const Joint* found = person.find(id)) {
+      const Vec3 off_m = found->p_in_rig_m - rig_from_left * truth.p_in_left_m;
+      return {truth.visible, found->state, 1000 * norm(off_m), 1000 * found->sigma_m()};
+    }
+  return {truth.visible, JointState::kLost, 0, 0};
+}
+
+/// What is scored, and whose joints have to be clicked for it.
+struct Wanted {
+  std::vector<JointId> joints, clicked;
+  std::vector<const Skeleton*> skeletons;
+};
+
+Result<Wanted> wanted(const Tracker& tracker, const ClipTruth& truth, std::vector<JointId> joints) {
+  const auto add = [](const Skeleton& skeleton, std::vector<JointId>& to) {
+    for (std::size_t j = skeleton.joints.size(); j-- > 0;) to.push_back(skeleton.joints[j].id);
+  };
+  if (joints.empty())
+    for (const Skeleton* skeleton : tracker.skeletons())
+      if (tracker.starts_by_itself() || skeleton->joints[0].side == truth.arm) add(*skeleton, joints);
+  Wanted out{std::move(joints), {}, {}};
+  for (const JointId joint : out.joints) {
+    DUO_TRY(truth.check(joint));
+    const auto skeletons = tracker.skeletons();
+    const auto with =
+        std::find_if(skeletons.begin(), skeletons.end(), [&](const Skeleton* s) { return s->index_of(joint).has_value(); });
+    if (with == skeletons.end())
+      return Error{ErrorCode::kBadInput, fmt::format("cannot score {}: the tracker {} finds {}", name_of(joint), tracker.name(),
+                                                     joint_names(skeletons))};
+    if (tracker.starts_by_itself() || std::find(out.skeletons.begin(), out.skeletons.end(), *with) != out.skeletons.end())
+      continue;
+    out.skeletons.push_back(*with);
+    add(**with, out.clicked);
+  }
+  for (const JointId joint : out.clicked) DUO_TRY(truth.check(joint));
+  return out;
+}
+
+}  // namespace
+
+Result<ClipScore> score_clip(const std::filesystem::path& folder, const ClipTruth& truth, ClipEvaluation what) {
+  PipelineSetup& setup = what.pipeline;
+  DUO_TRY_ASSIGN(auto tracker, make_tracker(setup.tracker));
+  DUO_TRY_ASSIGN(const Wanted want, wanted(*tracker, truth, what.joints));
+  ClipScore score{truth.name, setup.tracker, 0, 0, 0, {}, {}};
+  DUO_TRY_ASSIGN(score.first, truth.first_visible(want.clicked));
+  std::vector<Selection> selections;
+  std::mt19937 random(1);
+  for (const Skeleton* skeleton : want.skeletons)
+    selections.push_back(clicks(*skeleton, truth.frames[static_cast<std::size_t>(score.first)], what.jitter_px, random));
+  DUO_TRY_ASSIGN(auto pairs, open_pairs(folder / "left.avi", folder / "right.avi"));
+  if (truth.skew_ms != 0) pairs = with_skew(std::move(pairs), std::llround(truth.skew_ms * 1e6));
+  setup.first = score.first;
+  setup.frames.many_at_once = false;  // other frames would be made while a frame is scored
+  setup.frames.wants.disparity = true;
+  DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(pairs), std::move(setup), std::move(tracker)));
+  const Rectified& rectified = pipeline.header().rectified;
+  if (what.add_sinks) DUO_TRY(what.add_sinks(pipeline));
+  std::vector<std::vector<JointSample>> samples(want.joints.size());
+  DepthTally depth;
+  std::int64_t busy_ns = 0;  // without scoring, during which nothing goes on in the background
+  for (std::int64_t i = score.first; i < static_cast<std::int64_t>(truth.frames.size()); ++i) {
+    const FrameTruth& frame = truth.frames[static_cast<std::size_t>(i)];
+    const std::int64_t begin_ns = wall_ns();
+    DUO_TRY_ASSIGN(const Next next, pipeline.next());
+    if (next != Next::kNew)
+      return Error{ErrorCode::kBadInput, fmt::format("cannot evaluate {}: its videos end before frame {} of {} in truth.json",
+                                                     folder.string(), i, truth.frames.size())};
+    if (i == score.first && !selections.empty()) DUO_TRY(pipeline.select(selections));
+    pipeline.wait();
+    busy_ns += wall_ns() - begin_ns;
+    for (std::size_t j = 0; j < want.joints.size(); ++j) {
+      const JointId id = want.joints[j];
+      samples[j].push_back(sample(*frame[static_cast<std::size_t>(id)], id, pipeline.people(), rectified.rig_from_left));
+    }
+    DUO_TRY_ASSIGN(const DepthTruth depth_truth, load_depth_truth(folder, i));
+    depth.add(*pipeline.frame(), rectified, truth.rig.left, depth_truth);
+    DUO_TRY(pipeline.write());
+    ++score.frames;
+  }
+  score.fps = 1e9 * static_cast<double>(score.frames) / static_cast<double>(busy_ns);
+  for (std::size_t j = 0; j < want.joints.size(); ++j) score.joints.emplace_back(want.joints[j], score_joint(samples[j]));
+  score.depth = depth.score();
+  DUO_TRY(pipeline.finish_sinks());
+  return score;
+}
+
+}  // namespace duo
