@@ -1,4 +1,4 @@
-// Pool: long-lived threads that share the rows of an image. Waits block, nothing is allocated per call.
+// Pool: long-lived threads that share the rows of an image. Long waits block, nothing is allocated per call.
 #pragma once
 
 #include <atomic>
@@ -57,9 +57,10 @@ class Pool {
 
   std::mutex mutex_;
   std::condition_variable start_, done_;
-  std::uint64_t round_ = 0;
-  int in_use_ = 1;            // the caller's
-  int parts_ = 1, busy_ = 0;  // of this round
+  std::atomic<std::uint64_t> round_ = 0;  // written under the mutex, as all that follows
+  std::atomic<int> busy_ = 0;             // threads that have not ended this round
+  int in_use_ = 1;                        // the caller's
+  int parts_ = 1;                         // of this round
   bool stop_ = false;
   int count_ = 0, grain_ = 1;
   Call call_ = nullptr;

