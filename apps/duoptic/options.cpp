@@ -38,8 +38,9 @@ std::pair<std::string, double> parse_parameter(const std::string& text) {
   return {text.substr(0, equals), value};
 }
 
-/// Every parameter of every matcher, a line each, from the matchers' own tables.
-std::string parameter_help() {
+/// Every parameter of every matcher, a line each, from the matchers' own tables; where it would bury the other options, one line.
+std::string parameter_help(const CLI::App& app) {
+  if (app.get_name() != "depth") return "Overrides one parameter of the preset, see duoptic depth --help; may be repeated";
   std::string text = "Overrides one parameter of the preset; may be repeated:";
   for (const std::string& matcher : matcher_names())
     if (const auto parameters = matcher_parameters(matcher, "default"))
@@ -86,7 +87,7 @@ void EngineOptions::add_to(CLI::App& app) {
                                   ->check(CLI::IsMember(matcher_names()))
                                   ->capture_default_str();
   app.add_option("--preset", preset, preset_help())->capture_default_str();
-  app.add_option("--set", set, parameter_help())->type_name("NAME=VALUE");
+  app.add_option("--set", set, parameter_help(app))->type_name("NAME=VALUE");
   app.add_option("--denoise", denoise, "Before rectification; auto: gaussian for raw pictures, none for rectified ones")
       ->check(CLI::IsMember(denoise_names))
       ->capture_default_str();
