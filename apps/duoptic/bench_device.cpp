@@ -128,7 +128,7 @@ nlohmann::json json_of(const Run& run) {
 }
 
 void print(const Run& run) {
-  fmt::print("{:<30} {:9.2f} {:9.2f} {:9.2f} {:9.1f} {:8.2f} {:8.2f}  ", run.name, median(run.latency_ms), median(run.gpu_ms),
+  fmt::print("{:<33} {:9.2f} {:9.2f} {:9.2f} {:9.1f} {:8.2f} {:8.2f}  ", run.name, median(run.latency_ms), median(run.gpu_ms),
              run.own_cpu_ms, run.frames_per_s, static_cast<double>(run.bytes_up) * 1e-6,
              static_cast<double>(run.bytes_down) * 1e-6);
   for (const Stage& stage : run.stages) fmt::print("{} {:.2f}  ", stage.name, median(stage.ms));
@@ -146,7 +146,7 @@ Result<nlohmann::json> device_table(const DeviceBench& what) {
                         {"ours", nlohmann::json::array()}};
   if (!what.json)
     fmt::print(
-        "\n{}x{}, {} disparities, {}: copies {:.1f} GB/s on the device, {:.1f} up, {:.1f} down\n{:<30} {:>9} {:>9} {:>9} {:>9} "
+        "\n{}x{}, {} disparities, {}: copies {:.1f} GB/s on the device, {:.1f} up, {:.1f} down\n{:<33} {:>9} {:>9} {:>9} {:>9} "
         "{:>8} {:>8}  {}\n",
         size.width, size.height, what.max_disparity, engine->device(), speed.copy_gb_s, speed.up_gb_s, speed.down_gb_s, "",
         "latency", "GPU ms", "CPU ms", "frames/s", "MB up", "MB down", "stages, ms");
