@@ -77,7 +77,9 @@ Result<ClipScore> score_clip(const std::filesystem::path& folder, const ClipTrut
   PipelineSetup& setup = what.pipeline;
   DUO_TRY_ASSIGN(auto tracker, make_tracker(setup.tracker));
   DUO_TRY_ASSIGN(const Wanted want, wanted(*tracker, truth, what.joints));
-  ClipScore score{.clip = truth.name, .tracker = setup.tracker};
+  ClipScore score;
+  score.clip = truth.name;
+  score.tracker = setup.tracker;
   DUO_TRY_ASSIGN(score.first, truth.first_visible(want.clicked));
   DUO_TRY_ASSIGN(auto pairs,
                  open_pairs(folder / "left.avi", folder / "right.avi", {.skew_ns = std::llround(truth.skew_ms * 1e6)}));
