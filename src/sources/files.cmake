@@ -27,7 +27,7 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/two_views.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/video.cpp)
 duoptic_test(sources/files ${PROJECT_SOURCE_DIR}/src/sources/files_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/file_pairs_test.cpp
-  ${PROJECT_SOURCE_DIR}/src/sources/picture_bytes_test.cpp)
+  ${PROJECT_SOURCE_DIR}/src/sources/picture_bytes_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/board_pictures_test.cpp)
 foreach(file camera clock_model controls decode device modes system_calls)
   target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/camera/${file}.cpp)
 endforeach()
