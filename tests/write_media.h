@@ -7,8 +7,11 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <numeric>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "duoptic/image.h"
 #include "sources/libav.h"
@@ -73,7 +76,8 @@ struct Encoder {
   }
 };
 
-inline Encoder make_encoder(AVCodecID id, AVPixelFormat format, int b_frames = 0, bool global_header = false) {
+inline Encoder make_encoder(AVCodecID id, AVPixelFormat format, int b_frames = 0, bool global_header = false,
+                            int key_every = 12) {
   const AVCodec* codec = avcodec_find_encoder(id);
   Encoder encoder{av::Coder(avcodec_alloc_context3(codec))};
   AVCodecContext& c = *encoder.context;
@@ -84,6 +88,8 @@ inline Encoder make_encoder(AVCodecID id, AVPixelFormat format, int b_frames = 0
   c.time_base = {1, 30};
   c.framerate = {30, 1};
   c.max_b_frames = b_frames;
+  c.gop_size = key_every;
+  if (id == AV_CODEC_ID_FFV1) c.level = 3;  // with checksums
   c.bit_rate = 400'000;
   c.strict_std_compliance = FF_COMPLIANCE_UNOFFICIAL;
   if (global_header) c.flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
@@ -99,28 +105,49 @@ inline void write_picture(const std::filesystem::path& path, AVCodecID id, AVPix
   });
 }
 
-inline void write_video(const std::filesystem::path& path, AVCodecID id, AVPixelFormat format, int b_frames,
-                        const char* movflags = nullptr) {
+/// How a video is written, where that matters.
+struct VideoStyle {
+  int b_frames = 0;
+  int key_every = 12;
+  AVRational unit = {1, 30};                                    // of times
+  std::vector<std::pair<const char*, const char*>> muxer = {};  // options
+  std::function<void(AVStream&)> stream = [](AVStream&) {};     // what else is said of it
+};
+
+/// A video whose pictures, pattern(times[i]), come at these times.
+inline void write_video_at(const std::filesystem::path& path, AVCodecID id, AVPixelFormat format, const std::vector<int>& times,
+                           const VideoStyle& style = {}) {
   AVFormatContext* muxer = nullptr;
   ASSERT_GE(avformat_alloc_output_context2(&muxer, nullptr, nullptr, path.c_str()), 0);
-  Encoder encoder = make_encoder(id, format, b_frames, (muxer->oformat->flags & AVFMT_GLOBALHEADER) != 0);
+  Encoder encoder =
+      make_encoder(id, format, style.b_frames, (muxer->oformat->flags & AVFMT_GLOBALHEADER) != 0, style.key_every);
   AVStream* stream = avformat_new_stream(muxer, nullptr);
-  stream->time_base = {1, 30};
-  stream->avg_frame_rate = {30, 1};
+  stream->time_base = style.unit;
+  stream->avg_frame_rate = av_inv_q(style.unit);
   avcodec_parameters_from_context(stream->codecpar, encoder.context.get());
-  if (movflags != nullptr) av_opt_set(muxer->priv_data, "movflags", movflags, 0);
+  style.stream(*stream);
+  for (const auto& [name, value] : style.muxer) ASSERT_GE(av_opt_set(muxer->priv_data, name, value, 0), 0);
   ASSERT_GE(avio_open(&muxer->pb, path.c_str(), AVIO_FLAG_WRITE), 0);
   ASSERT_GE(avformat_write_header(muxer, nullptr), 0);
   const auto write = [&](AVPacket& packet) {
     if (packet.duration == 0) packet.duration = 1;
-    av_packet_rescale_ts(&packet, {1, 30}, stream->time_base);
+    av_packet_rescale_ts(&packet, style.unit, stream->time_base);
     ASSERT_GE(av_interleaved_write_frame(muxer, &packet), 0);
   };
-  for (int t = 0; t < kFrames; ++t) encoder.encode(pattern(format, t).get(), write);
+  for (const int t : times) encoder.encode(pattern(format, t).get(), write);
   encoder.encode(nullptr, write);
   ASSERT_GE(av_write_trailer(muxer), 0);
   avio_closep(&muxer->pb);
   avformat_free_context(muxer);
+}
+
+inline void write_video(const std::filesystem::path& path, AVCodecID id, AVPixelFormat format, int b_frames,
+                        const char* movflags = nullptr) {
+  std::vector<int> times(kFrames);
+  std::iota(times.begin(), times.end(), 0);
+  VideoStyle style{.b_frames = b_frames};
+  if (movflags != nullptr) style.muxer = {{"movflags", movflags}};
+  write_video_at(path, id, format, times, style);
 }
 
 }  // namespace duo::test

@@ -157,7 +157,7 @@ Result<Exit> from_scene(const Options& options, const CLI::App& app) {
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(const Board board, parse_board(options.board, options.square_mm / 1000));
-  DUO_TRY_ASSIGN(BoardPictures pictures, BoardPictures::open(options.left, options.right));
+  DUO_TRY_ASSIGN(BoardPictures pictures, BoardPictures::open(options.left, options.right, options.from_scene.input.wish()));
   std::unique_ptr<Calibrator> calibrator;
   Progress progress(app, pictures.count(), options.quiet);
   Pair pair;
@@ -213,6 +213,7 @@ Command add(CLI::App& app) {
   sub->add_option("--right-name", options->right_name, "And the right one")->capture_default_str();
   sub->add_flag("--from-scene", options->no_board, "No board: the pose from points of any scene, in two pictures or videos")
       ->excludes("--board");
+  options->from_scene.input.add_to(*sub);
   add_from_scene_options(*sub, options->from_scene);
   sub->add_flag("--json", options->json, "Print the result as JSON");
   sub->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");

@@ -35,6 +35,7 @@ constexpr char kFooter[] =
 struct Options {
   std::string left, right, rig, folder = "duoptic_out";
   int max_disparity = Setup().max_disparity;
+  InputOptions input;
   double near_m = 0;  // 0: max_disparity says how far to search
   std::int64_t every = 1;
   std::vector<std::string> windows;
@@ -158,7 +159,7 @@ void print(const Summary& summary, const Pipeline& pipeline, const Options& opti
 /// Of pairs that no rig rectifies: what their rows are off, where it matters. A live source cannot be read twice.
 Result<std::optional<RowOffsets>> rows_of(const Options& options, const Setup& setup, bool live) {
   if (setup.rig || options.keep_rows || live) return std::optional<RowOffsets>();
-  DUO_TRY_ASSIGN(const Input again, open_input(options.left, options.right, {}));
+  DUO_TRY_ASSIGN(const Input again, open_input(options.left, options.right, {}, options.input));
   DUO_TRY_ASSIGN(const RowOffsets rows, find_row_offsets(*again.pairs, options.engine.threads));
   return rows.matter() ? std::optional(rows) : std::nullopt;
 }
@@ -169,7 +170,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(frames.rig, load_rig(options.rig));
   }
-  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, frames.rig));
+  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, frames.rig, options.input));
   frames.rig = input.rig;
   if (options.near_m > 0 && !frames.rig) throw CLI::RequiredError("--rig");
   frames.max_disparity = options.max_disparity;
@@ -194,13 +195,14 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("depth", "Disparity, depth and points of pictures or videos");
   const auto options = std::make_shared<Options>();
-  sub->add_option("LEFT", options->left, "Picture or video of the left camera, a recording, or both views side by side")
+  sub->add_option("LEFT", options->left, "Picture or video of the left camera, a recording, or one file with both views")
       ->required();
   sub->add_option("RIGHT", options->right, "Picture or video of the right camera");
   sub->add_option(
       "--rig", options->rig,
       "Calibration (our JSON, OpenCV's YAML or JSON); without it, and in no recording that has one, the pair is taken "
       "as rectified");
+  options->input.add_to(*sub);
   CLI::Option* most = sub->add_option("--max-disparity", options->max_disparity, "Searches 0 .. N-1 px")
                           ->type_name("N")
                           ->check(CLI::Range(1, Engine::kMaxDisparity))

@@ -51,9 +51,9 @@ nlohmann::json to_json(const ClipScore& score) {
                                         {"hidden_median_mm", or_null(s.hidden_median_mm)},
                                         {"hidden_lost_percent", or_null(s.hidden_lost_percent)},
                                         {"inside_3_sigma_percent", or_null(s.inside_3_sigma_percent)}};
-  nlohmann::json out = {{"clip", score.clip},     {"tracker", score.tracker}, {"first_frame", score.first},
-                        {"frames", score.frames}, {"fps", score.fps},         {"joints", joints},
-                        {"depth", nullptr}};
+  nlohmann::json out = {
+      {"clip", score.clip},         {"tracker", score.tracker}, {"first_frame", score.first}, {"frames", score.frames},
+      {"left_out", score.left_out}, {"fps", score.fps},         {"joints", joints},           {"depth", nullptr}};
   if (const auto& d = score.depth)
     out["depth"] = {{"coverage_percent", d->coverage_percent},
                     {"bad_percent", d->bad_percent},
@@ -79,6 +79,7 @@ void print_lines(const ClipScore& score) {
                cell(s.inside_3_sigma_percent, 1, "%"));
   }
   fmt::print("{:<27} {} frames from {}, {:.1f} frames/s", "", score.frames, score.first, score.fps);
+  if (score.left_out > 0) fmt::print(", {} without a pair left out", score.left_out);
   if (score.depth)
     fmt::print(
         "; depth on the person: {:.1f} % covered, {:.1f} % off by more than 1 px, median {:.2f} px = {:.2f} %, "

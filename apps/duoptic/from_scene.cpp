@@ -32,7 +32,7 @@ void add_from_scene_options(CLI::App& app, FromSceneOptions& options) {
 
 Result<Exit> run_from_scene(const FromSceneOptions& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(const std::optional<Rig> lenses, read_lenses(options));
-  DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right));
+  DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right, options.input.wish()));
   const double baseline_m = options.baseline_m ? *options.baseline_m : lenses ? lenses->baseline_m() : kGuessedBaseline_m;
   DUO_TRY_ASSIGN(SceneRig found, rig_from_scene(lenses, baseline_m, *pairs, options.threads));
   if (found.after.verdict == RigVerdict::kRecalibrate)

@@ -5,11 +5,13 @@
 #include <string>
 
 #include "command.h"
+#include "input.h"
 
 namespace duo::app {
 
 struct FromSceneOptions {
-  std::string left, right;           // pictures or videos; right empty: both views side by side in one file
+  std::string left, right;  // pictures or videos; right empty: both views in one file
+  InputOptions input;
   std::string intrinsics;            // a rig file whose cameras are used; empty: unknown lenses, not metric
   std::optional<double> baseline_m;  // none: that of the intrinsics' rig
   std::string output;                // the rig file

@@ -1,10 +1,9 @@
 // What a command was given to look at.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,28 +19,44 @@ struct Input {
   std::vector<std::string> names;  // as the user wrote them, left first
 };
 
-/// The option --skew-ms: two videos do not tell when their pictures were taken.
-inline void add_skew_option(CLI::App& app, double& skew_ms) {
-  app.add_option("--skew-ms", skew_ms, "Of two videos: how much later than the left ones the right pictures were taken")
-      ->type_name("MS")
-      ->check(CLI::Range(-100.0, 100.0));
-}
+/// What the command line says of LEFT and RIGHT that they do not say themselves.
+struct InputOptions {
+  double skew_ms = 0;
+  std::optional<ViewLayout> layout = {};
 
-/// Opens LEFT and perhaps RIGHT. `rig` wins over the source's own; cameras are asked for the size that it was made for.
+  void add_to(CLI::App& app) {
+    app.add_option("--skew-ms", skew_ms,
+                   "Of two videos: how much later than their times say the right pictures were taken; the right camera began "
+                   "later: more than 0")
+        ->type_name("MS")
+        ->check(CLI::Range(-kMostSkew_ms, kMostSkew_ms));
+    app.add_option("--layout", layout, "Of one file with both views: where they are; without it what the file says")
+        ->transform(CLI::Transformer(std::map<std::string, ViewLayout>{{"side-by-side", ViewLayout::kSideBySide},
+                                                                       {"right-left", ViewLayout::kRightLeft},
+                                                                       {"top-bottom", ViewLayout::kTopBottom},
+                                                                       {"bottom-top", ViewLayout::kBottomTop}}))
+        ->type_name("side-by-side|right-left|top-bottom|bottom-top");
+  }
+  /// Cameras are asked for the size that the rig was made for.
+  PairWish wish(const std::optional<Rig>& rig = std::nullopt) const {
+    PairWish wish{.skew_ns = std::llround(skew_ms * 1e6), .layout = layout};
+    if (rig) wish.cameras.size = rig->left.size;
+    return wish;
+  }
+
+ private:
+  static constexpr double kMostSkew_ms = 1e9;  // eleven days
+};
+
+/// Opens LEFT and perhaps RIGHT. `rig` wins over the source's own.
 ///
-/// Errors  those of open_pairs(); a skew for what brings its own times
+/// Errors  those of open_pairs()
 inline Result<Input> open_input(const std::string& left, const std::string& right, const std::optional<Rig>& rig,
-                                double skew_ms = 0) {
+                                const InputOptions& options = {}) {
   Input input{nullptr, rig, {left}};
   if (!right.empty()) input.names.push_back(right);
-  DUO_TRY_ASSIGN(input.pairs, open_pairs(left, right, rig ? CameraWish{.size = rig->left.size} : CameraWish{}));
+  DUO_TRY_ASSIGN(input.pairs, open_pairs(left, right, options.wish(rig)));
   if (!rig) input.rig = input.pairs->rig();
-  if (skew_ms == 0) return input;
-  if (right.empty() || input.pairs->live())
-    return Error{
-        ErrorCode::kUnsupported,
-        fmt::format("cannot use --skew-ms with {}: cameras and recordings bring their own times; it is for two videos", left)};
-  input.pairs = with_skew(std::move(input.pairs), std::llround(skew_ms * 1e6));
   return input;
 }
 

@@ -9,6 +9,7 @@
 #include "interrupt.h"
 #include "progress.h"
 #include "rig_report.h"
+#include "timing.h"
 
 namespace duo::app::record {
 namespace {
@@ -26,18 +27,23 @@ constexpr char kFooter[] =
 
 struct Options {
   std::string left, right, output, rig;
-  double skew_ms = 0, seconds = 0;  // 0: to the end, or until Ctrl-C
+  InputOptions input;
+  double seconds = 0;  // 0: to the end, or until Ctrl-C
   bool force = false, json = false, quiet = false;
 };
 
-/// Up to the end of the source, the time that was asked for, or Ctrl-C.
+/// Up to the end of the source, the time that was asked for, or Ctrl-C. Live, that time is the clock's: cameras may be away.
 Result<Next> record_all(Pipeline& pipeline, const Options& options, const CLI::App& app) {
   const Interrupt interrupt;
+  const double start_ms = clock_ms(CLOCK_MONOTONIC);
+  const bool by_clock = pipeline.live() && options.seconds > 0;
+  constexpr double kGrace_ms = 300;  // the last pairs are on their way
   Progress progress(app, pipeline.count(), options.quiet);
   Next next = Next::kNew;
   while (!Interrupt::asked() && pipeline.recording().on && next != Next::kEnd && next != Next::kCut) {
     DUO_TRY_ASSIGN(next, pipeline.next());
     progress.frame(pipeline.recording().pairs);
+    if (by_clock && clock_ms(CLOCK_MONOTONIC) - start_ms >= options.seconds * 1000 + kGrace_ms) break;
   }
   pipeline.stop_recording();
   if (const auto failure = pipeline.recording_failure()) return *failure;
@@ -66,7 +72,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(setup.rig, load_rig(options.rig));
   }
-  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, setup.rig, options.skew_ms));
+  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, setup.rig, options.input));
   setup.rig = input.rig;
   setup.frame_s = input.pairs->frame_s();
   setup.replace = options.force;
@@ -95,7 +101,7 @@ Command add(CLI::App& app) {
   sub->add_option("RIGHT", options->right, "Right camera or video");
   sub->add_option("-o,--output", options->output, "The recording, NAME.mkv")->type_name("FILE")->required();
   sub->add_option("--rig", options->rig, "Calibration to keep in the recording; else the source's own")->type_name("FILE");
-  add_skew_option(*sub, options->skew_ms);
+  options->input.add_to(*sub);
   sub->add_option("--seconds", options->seconds, "How long; without it to the end, or until Ctrl-C")
       ->type_name("S")
       ->check(CLI::PositiveNumber);

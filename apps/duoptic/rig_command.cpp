@@ -9,6 +9,7 @@
 #include "command.h"
 #include "duoptic/rig_files.h"
 #include "duoptic/rig_health.h"
+#include "input.h"
 #include "rig_report.h"
 
 namespace duo::app::rig {
@@ -48,6 +49,7 @@ const std::map<std::string, RigFormat> kFormats = {
 
 struct Options {
   std::string rig, left, right, output, format = "opencv";
+  InputOptions input;
   Size size;
   int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   bool json = false;
@@ -62,7 +64,7 @@ Result<Exit> check(const Options& options, const CLI::App& app) {
   const std::vector<RigDoubt> doubts = rig_doubts(rig);
   std::optional<SceneHealth> scene;
   if (!options.left.empty()) {
-    DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right, {.size = rig.left.size}));
+    DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right, options.input.wish(rig)));
     DUO_TRY_ASSIGN(scene, scene_health(rig, *pairs, options.threads));
     if (!pairs->warning().empty()) say(app, "warning: " + pairs->warning());
   }
@@ -84,7 +86,7 @@ Result<Exit> check(const Options& options, const CLI::App& app) {
 
 Result<Exit> refine(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(const Rig rig, load_rig(options.rig));
-  DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right, {.size = rig.left.size}));
+  DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right, options.input.wish(rig)));
   DUO_TRY_ASSIGN(SceneRig found, refine_rig(rig, *pairs, options.threads));
   if (!(found.rig.right_from_left == rig.right_from_left)) found.rig.date = date_now();
   const bool useful = found.after.verdict != RigVerdict::kRecalibrate;
@@ -148,9 +150,9 @@ struct Subcommands {
 
 Subcommands add_subcommands(CLI::App& rig, Options& options) {
   const auto add_pictures = [&](CLI::App& sub, bool required) {
-    sub.add_option("LEFT", options.left, "Raw pictures or video of the left camera, or of both side by side")
-        ->required(required);
+    sub.add_option("LEFT", options.left, "Raw pictures or video of the left camera, or of both")->required(required);
     sub.add_option("RIGHT", options.right, "Of the right camera");
+    options.input.add_to(sub);
     sub.add_option("--threads", options.threads, "Threads; the result does not depend on them")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();

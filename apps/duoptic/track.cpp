@@ -40,7 +40,7 @@ struct Options {
   std::vector<std::string> select;
   std::string arm_side = "right";
   std::int64_t at_frame = 0;
-  double skew_ms = 0;
+  InputOptions input;
   bool force = false, stats = false, quiet = false, realtime = false;
   TrackingOptions tracking;
   SinkOptions sinks;
@@ -153,7 +153,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(rig, load_rig(options.rig));
   }
-  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, rig, options.skew_ms));
+  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, rig, options.input));
   if (!input.rig) throw CLI::RequiredError("--rig");  // most sources do not bring their own
   if (options.realtime && !input.pairs->live()) input.pairs = in_real_time(std::move(input.pairs));
   const RecorderSetup to_record{.frame_s = input.pairs->frame_s(),
@@ -194,7 +194,7 @@ Command add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   sub->add_option("LEFT", options->left,
                   "Video of the left camera, or the camera itself (camera:0, /dev/video0, http://, rtsp://, gst:);\nalone: a "
-                  "recording, both views side by side, or the synthetic person")
+                  "recording, one file with both views, or the synthetic person")
       ->required();
   sub->add_option("RIGHT", options->right, "The same of the right camera");
   sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); a recording may bring its own");
@@ -209,7 +209,7 @@ Command add(CLI::App& app) {
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
       ->capture_default_str();
-  add_skew_option(*sub, options->skew_ms);
+  options->input.add_to(*sub);
   options->sinks.add_to(*sub);
   CLI::Option* record =
       sub->add_option("--record", options->record,

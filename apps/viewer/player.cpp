@@ -50,7 +50,7 @@ double now_ms() { return clock_ms(CLOCK_MONOTONIC); }
 
 Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options, const CLI::App& app) {
   std::unique_ptr<Player> player(new Player(options));
-  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, options.rig));
+  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, options.rig, options.input));
   TrackingOptions tracking = options.tracking;
   tracking.all_maps = true;
   DUO_TRY_ASSIGN(PipelineSetup setup, tracking.setup(input));
@@ -311,7 +311,7 @@ bool Player::reopen() {
   pipeline_->stop_recording();
   pipeline_->close_source();  // before another: a file may be a device
   const auto restart = [this]() -> Result<void> {
-    DUO_TRY_ASSIGN(Input input, open_input(options_.left, options_.right, options_.rig));
+    DUO_TRY_ASSIGN(Input input, open_input(options_.left, options_.right, options_.rig, options_.input));
     return pipeline_->restart(std::move(input.pairs));
   };
   const Result<void> restarted = restart();

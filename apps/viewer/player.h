@@ -13,6 +13,7 @@
 #include "duoptic/rig_health.h"
 #include "duoptic/skew_watch.h"
 #include "duoptic/worker.h"
+#include "input.h"
 #include "sink_options.h"
 #include "tracking_options.h"
 
@@ -21,6 +22,7 @@ namespace duo::app::view {
 struct PlayerOptions {
   std::string left, right;
   std::optional<Rig> rig;
+  InputOptions input;
   TrackingOptions tracking;
   SinkOptions sinks;
   bool loop = false;

@@ -210,6 +210,7 @@ Command add(CLI::App& app) {
       ->required();
   sub->add_option("RIGHT", options->player.right, "The same of the right camera");
   sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); left out: the source's own");
+  options->player.input.add_to(*sub);
   CLI::Option* loop = sub->add_flag("--loop", options->player.loop, "Start again at the end of a file");
   sub->add_flag("--paused", options->paused, "Wait at the first frame");
   options->player.sinks.add_to(*sub);

@@ -18,11 +18,13 @@ namespace duo {
 /// Pairs of pictures of a board: from two folders, or the still moments of two videos.
 class BoardPictures {
  public:
-  /// Two folders pair by the numbers in their files' names; an empty `right` is the same folder, which then has both, told by
-  /// "left" and "right" in their names. Two videos give of every third of a second the stillest pair.
+  /// Two folders pair by the last numbers in their files' names, or by what differs within each; an empty `right` is the same
+  /// folder, which then has both, told by "left" and "right" in their names, or pictures that hold both views each. Two videos
+  /// give of every third of a second the stillest pair.
   ///
   /// Errors  those of sources; folders without pictures, or whose pictures do not pair
-  static Result<BoardPictures> open(const std::filesystem::path& left, const std::filesystem::path& right);
+  static Result<BoardPictures> open(const std::filesystem::path& left, const std::filesystem::path& right,
+                                    const PairWish& wish = {});
 
   std::int64_t count() const;
   /// False at the end. `name` says which pair it is, in words.
@@ -38,6 +40,7 @@ class BoardPictures {
 
   std::vector<std::pair<std::filesystem::path, std::filesystem::path>> files_;
   std::size_t at_ = 0;
+  PairWish wish_;
   std::unique_ptr<PairSource> video_;
   Pair before_;
   std::int64_t frame_ = 0;

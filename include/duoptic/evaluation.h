@@ -205,6 +205,7 @@ class DepthTally {
 struct ClipScore {
   std::string clip, tracker;
   std::int64_t first = 0, frames = 0;  // the first that was scored, and how many
+  std::int64_t left_out = 0;           // those from the first on of which a camera gave no picture
   double fps = 0;                      // without scoring
   std::vector<std::pair<JointId, JointScore>> joints;
   std::optional<DepthScore> depth;

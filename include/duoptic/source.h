@@ -35,7 +35,8 @@ class Source {
   virtual bool live() const { return false; }
   /// Live: pictures that were lost on the way or that nobody took in time; any thread may ask.
   virtual std::int64_t dropped() const { return 0; }
-  /// Live: what there is to say of the camera now (away since when, back again, cannot be locked); any thread may ask.
+  /// Live: what there is to say of the camera now (away since when, back again, cannot be locked); any thread may ask. Of a
+  /// file: how many of its pictures were damaged and left out so far.
   virtual std::string warning() const { return {}; }
   /// Fills `into` with the next picture; its memory is used again when it already has the right size.
   virtual Result<Next> next(Picture& into) = 0;
@@ -47,13 +48,24 @@ struct CameraWish {
   double rate_hz = 30;
 };
 
+/// Where both views lie in the pictures of one source; the first named is the left half, or the upper one.
+enum class ViewLayout : std::uint8_t { kSideBySide, kRightLeft, kTopBottom, kBottomTop };
+
+/// What is asked of two cameras, and what is known of files that they do not say themselves.
+struct PairWish {
+  CameraWish cameras = {};
+  TimeNs skew_ns = 0;                     // of two videos: how much later than their times say the right pictures were taken
+  std::optional<ViewLayout> layout = {};  // of one source; none: what it says itself, else side by side where both halves agree
+};
+
 /// Pictures of files and streams with more pixels than this are refused, before they are decoded where the file says its size;
 /// kMostPixels unless told. For the whole process, at any time.
 void limit_pictures(std::int64_t most_pixels);
 inline constexpr std::int64_t kMostPixels = std::int64_t{1} << 26;  // 8192 x 8192
 
-/// Opens a picture (PNG, JPEG, … one picture), a video file, a camera (camera:0, /dev/video0, camera:BUS_PATH) or a stream
-/// (http://, https://, rtsp://, gst:PIPELINE).
+/// Opens a picture (PNG, JPEG, … one picture), a video file (JPEGs one after the other are one, too), a camera (camera:0,
+/// /dev/video0, camera:BUS_PATH) or a stream (http://, https://, rtsp://, gst:PIPELINE). Pictures come upright, as EXIF's
+/// orientation and a video's display matrix ask; of 16 bits of gray the eight highest that are used.
 ///
 /// Errors  missing, empty, not a picture or video, unreadable at its start, too many pixels; a camera that cannot be opened,
 /// that does not give
@@ -82,27 +94,30 @@ class PairSource {
   virtual std::int64_t dropped() const { return 0; }
   /// Picture::t_ns counts from the start of a file; live, it is the steady clock's time of capture.
   virtual Result<Next> next(Pair& into) = 0;
-  /// After the end: why the stream ended before its files did (one was cut short, or is shorter); empty when it did not. Live,
-  /// any thread at any time: what Source::warning() says of both.
+  /// After the end: why the stream ended before its files did (one was cut short, or is shorter), and which pictures were left
+  /// out, damaged or without a partner; empty when there is nothing to say. Live, any thread at any time: what
+  /// Source::warning() says of both.
   virtual std::string warning() const = 0;
 };
 
 /// Opens LEFT and RIGHT (two pictures, two videos or two live sources of the same size); an empty `right` means that `left`
-/// holds both views: as two video tracks, which is a recording and may bring its rig, or side by side. A recording that was
-/// killed or cut gives its whole pairs and then Next::kCut. Two cameras share exposure, gain and white balance: the left one's,
-/// after a second. "synthetic", "synthetic:SCRIPT", "synthetic:SCRIPT:WIDTHxHEIGHT" or "synthetic:SCRIPT:WIDTHxHEIGHT:PAIRS"
-/// alone is the person of `duoptic synth`, live: that many pairs forth and back, 60 when not said.
+/// holds both views: as two video tracks, of which a recording may bring its rig, as the two pictures of an MPO, or as halves
+/// of each picture. A recording that was killed or cut gives its whole pairs and then Next::kCut. Two cameras share exposure,
+/// gain and white balance: the left one's, after a second. "synthetic", "synthetic:SCRIPT", "synthetic:SCRIPT:WIDTHxHEIGHT" or
+/// "synthetic:SCRIPT:WIDTHxHEIGHT:PAIRS" alone is the person of `duoptic synth`, live: that many pairs forth and back, 60 when
+/// not said.
+///
+/// Videos pair by their times, as cameras do: each picture with the nearest of the other camera within half the time from one
+/// picture to the next. Two pictures of 10 to 16 bits of gray are scaled alike.
 ///
 /// Errors  those of open_source(); a recording's rig that cannot be one; sizes differ; a picture and a video, a file and a live
-///         source, one camera twice; odd width side by side
+///         source, one camera twice; a layout, or a skew, for what has none; halves of odd size. From next(): halves that have
+///         nothing in common, videos without a picture that pairs
 Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right,
-                                               const CameraWish& wish = {});
+                                               const PairWish& wish = {});
 
 /// The pairs of files at the pace of their capture times, as if they came live: one that is late is dropped when the next is
 /// due, too.
 std::unique_ptr<PairSource> in_real_time(std::unique_ptr<PairSource> pairs);
-
-/// The same pairs, each right picture taken `skew_ns` later than its source says: two videos do not tell.
-std::unique_ptr<PairSource> with_skew(std::unique_ptr<PairSource> pairs, TimeNs skew_ns);
 
 }  // namespace duo

@@ -64,21 +64,26 @@ Result<Wanted> wanted(const Tracker& tracker, const ClipTruth& truth, std::vecto
   return out;
 }
 
+std::vector<Selection> selections_in(const Wanted& want, const FrameTruth& frame, double jitter_px) {
+  std::vector<Selection> selections;
+  std::mt19937 random(1);
+  for (const Skeleton* skeleton : want.skeletons) selections.push_back(clicks(*skeleton, frame, jitter_px, random));
+  return selections;
+}
+
 }  // namespace
 
 Result<ClipScore> score_clip(const std::filesystem::path& folder, const ClipTruth& truth, ClipEvaluation what) {
   PipelineSetup& setup = what.pipeline;
   DUO_TRY_ASSIGN(auto tracker, make_tracker(setup.tracker));
   DUO_TRY_ASSIGN(const Wanted want, wanted(*tracker, truth, what.joints));
-  ClipScore score{truth.name, setup.tracker, 0, 0, 0, {}, {}};
+  ClipScore score;
+  score.clip = truth.name;
+  score.tracker = setup.tracker;
   DUO_TRY_ASSIGN(score.first, truth.first_visible(want.clicked));
-  std::vector<Selection> selections;
-  std::mt19937 random(1);
-  for (const Skeleton* skeleton : want.skeletons)
-    selections.push_back(clicks(*skeleton, truth.frames[static_cast<std::size_t>(score.first)], what.jitter_px, random));
-  DUO_TRY_ASSIGN(auto pairs, open_pairs(folder / "left.avi", folder / "right.avi"));
-  if (truth.skew_ms != 0) pairs = with_skew(std::move(pairs), std::llround(truth.skew_ms * 1e6));
-  setup.first = score.first;
+  DUO_TRY_ASSIGN(auto pairs,
+                 open_pairs(folder / "left.avi", folder / "right.avi", {.skew_ns = std::llround(truth.skew_ms * 1e6)}));
+  const double frame_s = pairs->frame_s();
   setup.frames.many_at_once = false;  // other frames would be made while a frame is scored
   setup.frames.wants.disparity = true;
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(pairs), std::move(setup), std::move(tracker)));
@@ -87,14 +92,18 @@ Result<ClipScore> score_clip(const std::filesystem::path& folder, const ClipTrut
   std::vector<std::vector<JointSample>> samples(want.joints.size());
   DepthTally depth;
   std::int64_t busy_ns = 0;  // without scoring, during which nothing goes on in the background
-  for (std::int64_t i = score.first; i < static_cast<std::int64_t>(truth.frames.size()); ++i) {
-    const FrameTruth& frame = truth.frames[static_cast<std::size_t>(i)];
+  const auto count = static_cast<std::int64_t>(truth.frames.size());
+  for (std::int64_t i = -1; i < count - 1;) {
     const std::int64_t begin_ns = wall_ns();
     DUO_TRY_ASSIGN(const Next next, pipeline.next());
     if (next != Next::kNew)
       return Error{ErrorCode::kBadInput, fmt::format("cannot evaluate {}: its videos end before frame {} of {} in truth.json",
-                                                     folder.string(), i, truth.frames.size())};
-    if (i == score.first && !selections.empty()) DUO_TRY(pipeline.select(selections));
+                                                     folder.string(), i + 1, count)};
+    // By its time: a frame of which a camera gave no picture has no pair.
+    i = std::llround(static_cast<double>(pipeline.pair()->left.t_ns) * 1e-9 / frame_s);
+    if (i < score.first || i >= count) continue;
+    const FrameTruth& frame = truth.frames[static_cast<std::size_t>(i)];
+    if (score.frames == 0 && !want.skeletons.empty()) DUO_TRY(pipeline.select(selections_in(want, frame, what.jitter_px)));
     pipeline.wait();
     busy_ns += wall_ns() - begin_ns;
     for (std::size_t j = 0; j < want.joints.size(); ++j) {
@@ -106,6 +115,7 @@ Result<ClipScore> score_clip(const std::filesystem::path& folder, const ClipTrut
     DUO_TRY(pipeline.write());
     ++score.frames;
   }
+  score.left_out = count - score.first - score.frames;
   score.fps = 1e9 * static_cast<double>(score.frames) / static_cast<double>(busy_ns);
   for (std::size_t j = 0; j < want.joints.size(); ++j) score.joints.emplace_back(want.joints[j], score_joint(samples[j]));
   score.depth = depth.score();

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/clock.h"
+#include "pipeline/flat_picture.h"
 
 namespace duo {
 namespace {
@@ -136,6 +137,8 @@ void FrameStream::submit(Matched& item) {
 void FrameStream::collect(Matched& item) {
   if (engine_ == nullptr) return;
   item.frame = engine_->collect();
+  if (is_flat(item.pair->left.pixels.view()) || is_flat(item.pair->right.pixels.view()))
+    item.frame = without_depth(std::move(item.frame));
   item.engine_ms = static_cast<double>(wall_ns() - item.started_ns) * 1e-6;
   item.event = engine_->take_event();
   if (item.aligned) std::swap(item.pair->right.pixels, item.other_right);

@@ -16,28 +16,77 @@ constexpr int kWindow = 10;  // frames of a video, of which the stillest is look
 
 Error refused(const std::string& why) { return {ErrorCode::kBadInput, "cannot calibrate: " + why}; }
 
-/// Pictures of one side by their number; of a folder with both sides only those that name this side.
-Result<std::map<std::string, fs::path>> pictures_of(const fs::path& folder, const std::string& side) {
-  std::vector<fs::path> all, named;
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+/// The pictures of a folder, without those that the system hides.
+Result<std::vector<fs::path>> pictures_in(const fs::path& folder) {
+  std::vector<fs::path> all;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
-    std::string ending = entry.path().extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-    constexpr const char* kEndings[] = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp", ".pgm", ".ppm"};
-    if (std::find(std::begin(kEndings), std::end(kEndings), ending) == std::end(kEndings)) continue;
-    all.push_back(entry.path());
-    if (entry.path().stem().string().find(side) != std::string::npos) named.push_back(entry.path());
+    constexpr const char* kEndings[] = {".png",  ".jpg", ".jpeg", ".bmp", ".tif", ".tiff",
+                                        ".webp", ".pgm", ".ppm",  ".mpo", ".jps"};
+    const bool hidden = entry.path().filename().string().starts_with('.');
+    const std::string ending = lower(entry.path().extension().string());
+    if (!hidden && std::find(std::begin(kEndings), std::end(kEndings), ending) != std::end(kEndings))
+      all.push_back(entry.path());
   }
-  if (all.empty()) return refused(fmt::format("{} has no pictures (PNG, JPEG, BMP, TIFF, WebP, PNM)", folder.string()));
+  std::sort(all.begin(), all.end());
+  if (all.empty()) return refused(fmt::format("{} has no pictures (PNG, JPEG, BMP, TIFF, WebP, PNM, MPO)", folder.string()));
+  return all;
+}
+
+/// Those that name this side; all of them where none names one.
+std::vector<fs::path> of_side(const std::vector<fs::path>& all, const std::string& side) {
+  std::vector<fs::path> named;
+  for (const fs::path& path : all)
+    if (lower(path.stem().string()).find(side) != std::string::npos) named.push_back(path);
+  return named.empty() ? all : named;
+}
+
+/// The last number of a text, without leading zeros; the text itself where there is none.
+std::string last_number(const std::string& text) {
+  const std::size_t end = text.find_last_of("0123456789");
+  if (end == std::string::npos) return text;
+  std::size_t begin = end;
+  while (begin > 0 && is_digit(text[begin - 1])) --begin;
+  const std::string number = text.substr(begin, end + 1 - begin);
+  return number.substr(std::min(number.find_first_not_of('0'), number.size() - 1));
+}
+
+/// How many characters all stems share at their beginning, or at their end; numbers are not taken apart.
+std::size_t shared(const std::vector<std::string>& stems, bool at_end) {
+  const auto at = [&](const std::string& stem, std::size_t i) { return stem[at_end ? stem.size() - 1 - i : i]; };
+  std::size_t count = stems[0].size();
+  for (const std::string& stem : stems) {
+    count = std::min(count, stem.size());
+    for (std::size_t i = 0; i < count; ++i)
+      if (at(stem, i) != at(stems[0], i)) count = i;
+  }
+  while (count > 0 && is_digit(at(stems[0], count - 1))) --count;
+  return count;
+}
+
+/// Pictures of one side by what tells them apart: the last number of their names, or, where that is the same in two, what
+/// differs within the folder.
+Result<std::map<std::string, fs::path>> by_number(const std::vector<fs::path>& pictures) {
   std::map<std::string, fs::path> out;
-  for (const fs::path& path : named.empty() ? all : named) {
-    std::string number;
-    for (const char c : path.stem().string())
-      if (std::isdigit(static_cast<unsigned char>(c))) number += c;
-    number.insert(0, number.size() < 12 ? 12 - number.size() : 0, '0');
-    if (!out.emplace(number, path).second)
+  for (const fs::path& path : pictures) out.emplace(last_number(path.stem().string()), path);
+  if (out.size() == pictures.size()) return out;
+  out.clear();
+  std::vector<std::string> stems;
+  for (const fs::path& path : pictures) stems.push_back(path.stem().string());
+  const std::size_t before = shared(stems, false), after = shared(stems, true);
+  for (std::size_t i = 0; i < stems.size(); ++i) {
+    const std::size_t end = std::max(before, stems[i].size() - std::min(after, stems[i].size()));
+    const std::string key = last_number(stems[i].substr(before, end - before));
+    if (const auto [other, added] = out.emplace(key, pictures[i]); !added)
       return refused(
-          fmt::format("{} and {} have the same number; give each pair its own", out[number].string(), path.string()));
+          fmt::format("{} and {} have the same number; give each pair its own", other->second.string(), pictures[i].string()));
   }
   return out;
 }
@@ -53,22 +102,34 @@ double difference(const Image<Rgb8>& a, const Image<Rgb8>& b) {
 
 }  // namespace
 
-Result<BoardPictures> BoardPictures::open(const fs::path& left, const fs::path& right) {
+Result<BoardPictures> BoardPictures::open(const fs::path& left, const fs::path& right, const PairWish& wish) {
   BoardPictures out;
+  out.wish_ = wish;
   std::error_code error;
   if (!fs::is_directory(left, error)) {
     if (fs::is_directory(right, error))
       return refused("one of both is a folder, the other not; give two folders or two videos");
-    DUO_TRY_ASSIGN(out.video_, open_pairs(left, right));
+    DUO_TRY_ASSIGN(out.video_, open_pairs(left, right, wish));
     if (out.video_->live()) return refused("cameras give no second look; record the board first, and give the videos");
     if (out.video_->still()) return refused("one pair of pictures is too few; give two folders of them, or two videos");
     return out;
   }
   const fs::path other = right.empty() ? left : right;
   if (!fs::is_directory(other, error)) return refused(fmt::format("{} is no folder, {} is one", other.string(), left.string()));
-  DUO_TRY_ASSIGN(auto lefts, pictures_of(left, "left"));
-  DUO_TRY_ASSIGN(auto rights, pictures_of(other, "right"));
-  if (lefts == rights) return refused(fmt::format("left and right are the same pictures in {}", left.string()));
+  DUO_TRY_ASSIGN(const std::vector<fs::path> all, pictures_in(left));
+  const std::vector<fs::path> left_pictures = of_side(all, "left");
+  std::vector<fs::path> right_pictures = of_side(all, "right");
+  if (right.empty() && left_pictures == right_pictures) {
+    for (const fs::path& path : all) out.files_.emplace_back(path, fs::path());
+    return out;
+  }
+  if (!right.empty()) {
+    DUO_TRY_ASSIGN(const std::vector<fs::path> others, pictures_in(other));
+    right_pictures = of_side(others, "right");
+  }
+  if (left_pictures == right_pictures) return refused(fmt::format("left and right are the same pictures in {}", left.string()));
+  DUO_TRY_ASSIGN(const auto lefts, by_number(left_pictures));
+  DUO_TRY_ASSIGN(const auto rights, by_number(right_pictures));
   for (const auto& [number, path] : lefts)
     if (const auto partner = rights.find(number); partner != rights.end()) out.files_.emplace_back(path, partner->second);
   if (out.files_.empty())
@@ -85,6 +146,12 @@ Result<bool> BoardPictures::next(Pair& into, std::string& name) {
   if (video_) return next_still(into, name);
   if (at_ == files_.size()) return false;
   const auto& [left, right] = files_[at_++];
+  if (right.empty()) {
+    DUO_TRY_ASSIGN(const auto both, open_pairs(left, {}, wish_));
+    DUO_TRY_ASSIGN([[maybe_unused]] const Next next, both->next(into));
+    name = left.filename().string();
+    return true;
+  }
   for (const bool is_left : {true, false}) {
     DUO_TRY_ASSIGN(const auto source, open_source(is_left ? left : right));
     DUO_TRY_ASSIGN([[maybe_unused]] const Next next, source->next(is_left ? into.left : into.right));

@@ -6,22 +6,32 @@ target_link_libraries(duoptic PRIVATE PkgConfig::LIBAV PkgConfig::CURL)
 target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/board_pictures.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/open_source.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/arrival_clock.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/container_end.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/ffv1_check.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/gray_scale.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/gst_process.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/http_bytes.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/in_real_time.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/libav.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/one_source.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/orientation.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/pairing.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/pairs.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/picture_bytes.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/pictures.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/recording.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/stream.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/stream_input.cpp
-  ${PROJECT_SOURCE_DIR}/src/sources/video.cpp
-  ${PROJECT_SOURCE_DIR}/src/sources/with_skew.cpp)
-duoptic_test(sources/files ${PROJECT_SOURCE_DIR}/src/sources/files_test.cpp)
+  ${PROJECT_SOURCE_DIR}/src/sources/two_files.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/two_views.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/video.cpp)
+duoptic_test(sources/files ${PROJECT_SOURCE_DIR}/src/sources/files_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/file_pairs_test.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/picture_bytes_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/board_pictures_test.cpp)
 foreach(file camera clock_model controls decode device modes system_calls)
   target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/camera/${file}.cpp)
 endforeach()
-target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/live/live_pairs.cpp ${PROJECT_SOURCE_DIR}/src/sources/live/pairing.cpp)
+target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/live/live_pairs.cpp)
 duoptic_test(sources/live ${PROJECT_SOURCE_DIR}/src/sources/live/live_test.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/camera/camera_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/stream_test.cpp)
 if(DUO_TESTS)

@@ -17,15 +17,13 @@ namespace duo::av {
 namespace {
 
 // libswscale's own gray and 16-bit paths round through YUV; a gray value must stay what it is (ground truth comes as gray).
-template <class T, int kShift>
-void gray_to_rgb(const AVFrame& frame, Image<Rgb8>& into) {
-  for (int y = 0; y < into.height(); ++y) {
-    const T* src = reinterpret_cast<const T*>(frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0]);
+template <class ValueAt>
+void gray_to_rgb(Image<Rgb8>& into, ValueAt&& value_at) {
+  for (int y = 0; y < into.height(); ++y)
     for (int x = 0; x < into.width(); ++x) {
-      const auto v = static_cast<std::uint8_t>(src[x] >> kShift);
+      const std::uint8_t v = value_at(y, x);
       into.at(y, x) = {v, v, v};
     }
-  }
 }
 
 // The deprecated "J" formats are the plain ones with full range; libswscale warns about them otherwise.
@@ -95,10 +93,14 @@ bool ToRgb::convert(const AVFrame& frame, Image<Rgb8>& into) {
   const Size size{frame.width, frame.height};
   if (size.empty() || size.width > kMaxSide || size.height > kMaxSide || !too_many_pixels(size).empty()) return false;
   if (into.size() != size) into = Image<Rgb8>(size);
-  if (frame.format == AV_PIX_FMT_GRAY8) return gray_to_rgb<std::uint8_t, 0>(frame, into), true;
-  if (frame.format == AV_PIX_FMT_GRAY16LE) return gray_to_rgb<std::uint16_t, 8>(frame, into), true;
-  // A big-endian 16-bit value read as little-endian has its high byte below.
-  if (frame.format == AV_PIX_FMT_GRAY16BE) return gray_to_rgb<std::uint16_t, 0>(frame, into), true;
+  if (frame.format == AV_PIX_FMT_GRAY8) {
+    gray_to_rgb(into, [&](int y, int x) { return frame.data[0][std::ptrdiff_t{y} * frame.linesize[0] + x]; });
+    return true;
+  }
+  if (is_gray16(frame.format)) {
+    gray_to_rgb(into, [&](int y, int x) { return gray_->of(gray16_at(frame, y, x)); });
+    return true;
+  }
 
   if (!scaler_ || size != size_ || frame.format != format_ || frame.colorspace != colorspace_ || frame.color_range != range_) {
     bool full_range = frame.color_range == AVCOL_RANGE_JPEG;

@@ -9,6 +9,7 @@
 #include "core/libav.h"
 #include "duoptic/frame.h"
 #include "duoptic/result.h"
+#include "sources/gray_scale.h"
 
 namespace duo::av {
 
@@ -73,6 +74,13 @@ inline TimeNs capture_ns(const AVPacket& packet, AVRational base) {
 /// machine.
 class ToRgb {
  public:
+  /// Sees a frame before it is converted: of gray of 16 bits, how many are used.
+  void see(const AVFrame& frame) { gray_->see(frame); }
+  /// Both convert gray of 16 bits alike from now on.
+  void scale_as(ToRgb& other) {
+    gray_->see(*other.gray_);
+    other.gray_ = gray_;
+  }
   /// False when the pixel format cannot be converted or the picture is larger than kMaxSide. libswscale reads in steps of its
   /// own: kReadBeyond bytes after the last row's must be there.
   bool convert(const AVFrame& frame, Image<Rgb8>& into);
@@ -80,6 +88,7 @@ class ToRgb {
   static constexpr int kMaxSide = 16384;
 
  private:
+  std::shared_ptr<GrayScale> gray_ = std::make_shared<GrayScale>();
   Scaler scaler_;
   int format_ = -1, colorspace_ = -1, range_ = -1;
   Size size_;

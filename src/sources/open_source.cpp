@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <limits>
@@ -12,17 +13,31 @@
 #include "duoptic/source.h"
 #include "sources/camera/camera.h"
 #include "sources/camera/modes.h"
+#include "sources/file_source.h"
 #include "sources/libav.h"
+#include "sources/picture_bytes.h"
 #include "sources/pictures.h"
 #include "sources/stream.h"
 #include "sources/video.h"
 
 namespace duo {
 
-Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path, const CameraWish& wish) {
+namespace {
+
+/// Up to `most` bytes from the file's beginning.
+Result<std::string> beginning(const Descriptor& file, std::size_t most, const std::string& name) {
+  std::string bytes(most, '\0');
+  std::size_t got = 0;
+  for (ssize_t n = 1; n > 0 && got < most; got += static_cast<std::size_t>(n)) {
+    n = ::pread(file.get(), bytes.data() + got, most - got, static_cast<off_t>(got));
+    if (n < 0) return Error{ErrorCode::kBadInput, fmt::format("cannot read {}: {}", name, std::strerror(errno))};
+  }
+  bytes.resize(got);
+  return bytes;
+}
+
+Result<std::unique_ptr<Source>> open_file_source(const std::filesystem::path& path, int view, std::optional<int> track) {
   const std::string name = path.string();
-  if (is_camera_name(name)) return open_camera(linux_calls(), name, wish);
-  if (is_stream_name(name)) return open_stream(name);
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status))
@@ -33,13 +48,33 @@ Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path, c
     return Error{ErrorCode::kBadInput, fmt::format("cannot read {}: it is not a file; give a picture or a video", name)};
   // Of any size: of a video only parts are ever in memory.
   DUO_TRY_ASSIGN(const Descriptor file, open_file(path, std::numeric_limits<std::size_t>::max(), "input"));
-  std::string head(kPictureMagicBytes, '\0');
-  const ssize_t read = ::pread(file.get(), head.data(), head.size(), 0);
-  if (read < 0) return Error{ErrorCode::kBadInput, fmt::format("cannot read {}: {}", name, std::strerror(errno))};
-  head.resize(static_cast<std::size_t>(read));
+  DUO_TRY_ASSIGN(const std::string head, beginning(file, kPictureMagicBytes, name));
   if (head.empty()) return Error{ErrorCode::kBadInput, fmt::format("cannot read {}: the file is empty", name)};
+  if (const std::string_view kind = foreign_kind(head); !kind.empty())
+    return Error{ErrorCode::kUnsupported,
+                 fmt::format("cannot read {}: it is a {} file, which is not read; save it as PNG or JPEG", name, kind)};
   av_log_set_level(AV_LOG_QUIET);  // what is wrong is said in our results
-  return is_picture(head) ? open_picture(path) : open_video(path);
+  if (!is_picture(head)) return open_video(path, track);
+  if (is_jpeg(head)) {
+    constexpr std::uintmax_t kMostOfFirst = std::uintmax_t{64} << 20;
+    const std::uintmax_t size = std::min(std::filesystem::file_size(path, error), kMostOfFirst);
+    DUO_TRY_ASSIGN(const std::string bytes, beginning(file, static_cast<std::size_t>(size), name));
+    if (is_jpeg_sequence(bytes)) return open_video(path, track, "mjpeg");
+  }
+  return open_picture(path, view);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Source>> open_source(const std::filesystem::path& path, const CameraWish& wish) {
+  const std::string name = path.string();
+  if (is_camera_name(name)) return open_camera(linux_calls(), name, wish);
+  if (is_stream_name(name)) return open_stream(name);
+  return open_file_source(path, 0, std::nullopt);
+}
+
+Result<std::unique_ptr<Source>> open_view(const std::filesystem::path& path, int view) {
+  return open_file_source(path, view, view);
 }
 
 }  // namespace duo

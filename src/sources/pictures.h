@@ -16,10 +16,10 @@ inline constexpr std::size_t kPictureMagicBytes = 16;
 /// True for PNG, JPEG, BMP, TIFF, WebP and PNM, told by their first bytes.
 bool is_picture(std::string_view head);
 
-/// Reads the picture whole: gray and 16 bits become 8-bit RGB, alpha is dropped, the EXIF orientation is ignored (a rig
-/// belongs to the sensor's own axes).
+/// Reads the picture whole: gray and 16 bits become 8-bit RGB, alpha is dropped, and it is put upright as its EXIF asks, as
+/// OpenCV does, too. `view`: of an MPO, 0 or 1.
 ///
 /// Errors  cut short or damaged anywhere; kind of pixels not supported
-Result<std::unique_ptr<Source>> open_picture(const std::filesystem::path& path);
+Result<std::unique_ptr<Source>> open_picture(const std::filesystem::path& path, int view = 0);
 
 }  // namespace duo

@@ -109,7 +109,7 @@ void fill_times(const Tally& left, const Tally& right, RecordingReport& report) 
 Result<std::optional<RecordingHead>> read_recording_head(const std::filesystem::path& path) {
   DUO_TRY_ASSIGN(const TwoTracks tracks, open_two_tracks(path));
   if (!tracks.container) return std::optional<RecordingHead>();
-  RecordingHead head;
+  RecordingHead head{.ours = tracks.ours()};
   DUO_TRY_ASSIGN(head.rig, tracks.rig(path.string()));
   head.pairs = pairs_in_index(tracks);
   return std::optional<RecordingHead>(std::move(head));

@@ -32,8 +32,9 @@ struct TwoTracks {
 Result<TwoTracks> open_two_tracks(const std::filesystem::path& path);
 
 struct RecordingHead {
+  bool ours = false;       // its tracks were paired when it was made; else they pair by time
   std::int64_t pairs = 0;  // by its index; 0: it has none, because it was killed or cut
-  std::optional<Rig> rig;
+  std::optional<Rig> rig = {};
 };
 
 /// Empty for a file that is no Matroska file with two video tracks.

@@ -10,12 +10,14 @@
 #include "core/clock.h"
 #include "duoptic/bounded_queue.h"
 #include "duoptic/worker.h"
+#include "sources/arrival_clock.h"
 #include "sources/stream_input.h"
 
 namespace duo {
 namespace {
 
 constexpr auto kFirstPicture = std::chrono::seconds(10);
+constexpr auto kMeasuring = std::chrono::seconds(1);  // from the first picture on, of the rate
 constexpr auto kStreamPatience = std::chrono::milliseconds(500);
 constexpr auto kTryAgain = std::chrono::milliseconds(500);
 constexpr auto kGoodbye = std::chrono::seconds(3);
@@ -24,11 +26,17 @@ constexpr auto kGoodbye = std::chrono::seconds(3);
 /// way to end that.
 struct StreamState {
   std::string name;
-  BoundedQueue<Picture> pictures{1, WhenFull::kDropOldest};  // stamped with their arrival
-  double rate_hz = 0;                                        // from the first picture on
-  std::mutex mutex;                                          // of trouble
+  BoundedQueue<Picture> pictures{1, WhenFull::kDropOldest};
+  std::mutex mutex;  // of what follows
+  std::condition_variable measured;
+  double frame_s = 0;  // 0: not measured yet
   std::string trouble;
 };
+
+double known_frame_s(StreamState& state) {
+  const std::lock_guard lock(state.mutex);
+  return state.frame_s;
+}
 
 /// Until the stream breaks off or is no longer wanted.
 ///
@@ -36,15 +44,17 @@ struct StreamState {
 std::string read_stream(StreamState& state, std::uint64_t& arrived, const std::stop_token& stop) {
   StreamInput input([&] { return stop.stop_requested(); });
   if (std::string why = input.open(state.name); !why.empty()) return why;
+  ArrivalClock clock(input.frame_s() > 0 ? input.frame_s() : known_frame_s(state));
   Picture picture;
   while (input.next(picture)) {
-    picture.t_ns = wall_ns();
-    picture.sequence = arrived;
-    if (arrived++ == 0) state.rate_hz = input.rate_hz();
+    picture.t_ns = clock.capture_ns(wall_ns());
+    picture.sequence = arrived++;
     {
       const std::lock_guard lock(state.mutex);
       state.trouble.clear();
+      state.frame_s = clock.frame_s();
     }
+    state.measured.notify_all();
     if (!state.pictures.put(picture)) break;
   }
   return {};
@@ -83,7 +93,7 @@ class Stream final : public Source {
     if (reader_.started() && !reader_.ends_within(kGoodbye)) reader_.detach();
   }
 
-  /// Waits for the first picture, which tells the size.
+  /// Waits for the first picture, which tells the size, and for those that tell the rate.
   Result<void> start() {
     DUO_TRY_ASSIGN(reader_, Worker::start(
                                 "read stream " + state_->name,
@@ -93,7 +103,8 @@ class Stream final : public Source {
     if (taken != Taken::kValue) return no_picture(state_->name, {});
     size_ = first_.pixels.size();
     has_first_ = true;
-    if (state_->rate_hz >= 1 && state_->rate_hz <= 1000) frame_s_ = 1 / state_->rate_hz;
+    std::unique_lock lock(state_->mutex);
+    if (state_->measured.wait_for(lock, kMeasuring, [this] { return state_->frame_s > 0; })) frame_s_ = state_->frame_s;
     return {};
   }
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstring>
 #include <utility>
 
 namespace duo {
@@ -92,7 +93,12 @@ std::string StreamInput::open_decoder() {
     return avcodec_parameters_to_context(&decoder, stream.codecpar) >= 0;
   });
   if (!decoder_) return fmt::format("no decoder for {}", avcodec_get_name(stream.codecpar->codec_id));
-  rate_hz_ = av_q2d(av_guess_frame_rate(container_.get(), &stream, nullptr));
+  // Only a pipeline's head says its rate; what libav makes of other streams is a guess.
+  const AVRational rate = stream.avg_frame_rate;
+  const bool said = std::strcmp(container_->iformat->name, "yuv4mpegpipe") == 0 && rate.num > 0 && rate.den > 0;
+  const double frame_s = said ? av_q2d(av_inv_q(rate)) : 0;
+  constexpr double kLeast_s = 0.001, kMost_s = 1;
+  frame_s_ = frame_s >= kLeast_s && frame_s <= kMost_s ? frame_s : 0;
   return {};
 }
 

@@ -28,7 +28,7 @@ class StreamInput {
   ///
   /// Returns  false when the stream has broken off
   bool next(Picture& into);
-  double rate_hz() const { return rate_hz_; }  // 0: not known
+  double frame_s() const { return frame_s_; }  // from picture to picture, where the stream says it; else 0
 
   /// Gives up to `size` bytes: how many, 0 at the end, or an error number of libav's.
   using Read = std::function<int(std::uint8_t* into, int size)>;
@@ -68,7 +68,7 @@ class StreamInput {
   av::ToRgb to_rgb_;
   AVFormatContext* opening_ = nullptr;  // what may still connect, once
   int stream_ = -1;
-  double rate_hz_ = 0;
+  double frame_s_ = 0;
 };
 
 }  // namespace duo

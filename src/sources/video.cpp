@@ -3,44 +3,69 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "core/capture_mark.h"
 #include "core/file.h"
+#include "sources/container_end.h"
+#include "sources/ffv1_check.h"
+#include "sources/file_source.h"
 #include "sources/libav.h"
+#include "sources/orientation.h"
+
+extern "C" {
+#include <libavutil/stereo3d.h>
+}
 
 namespace duo {
 namespace {
 
 // Containers that hold nothing but their own bytes: play lists and the like could reach other files or the network.
-constexpr char kContainers[] = "avi,matroska,webm,mov,mp4,mpegts,mpeg";
+constexpr char kContainers[] = "avi,matroska,webm,mov,mp4,mpegts,mpeg,mpjpeg,mjpeg";
 
 Error unreadable(const std::filesystem::path& path, int error, const std::string& why) {
   return av::input_error("video " + path.string(), error, why);
 }
 
-class VideoFile final : public Source {
+class VideoFile final : public FileSource {
  public:
-  Result<void> open(const std::filesystem::path& path, std::optional<int> track);
+  Result<void> open(const std::filesystem::path& path, std::optional<int> track, const char* format);
   Size size() const override { return size_; }
   std::int64_t count() const override { return announced_; }
   bool still() const override { return false; }
   double frame_s() const override { return static_cast<double>(frame_ns()) * 1e-9; }
+  std::string warning() const override;
   Result<Next> next(Picture& into) override;
+
+  std::optional<ViewLayout> layout() const override { return layout_; }
+  int views() const override;
+  void scale_as(FileSource& other) override {
+    if (auto* video = dynamic_cast<VideoFile*>(&other); video != nullptr) to_rgb_.scale_as(video->to_rgb_);
+  }
+  TimeNs first_ns() const override { return first_ns_; }
+  TimeNs end_ns() const override;
+  bool any_origin() const override { return std::strstr(container_->iformat->name, "mpeg") != nullptr; }
+  void shift_times(TimeNs by_ns) override { shift_ns_ += by_ns; }
+  std::int64_t number() const override { return number_; }
 
  private:
   enum class Decoded { kFrame, kEnd, kCut };
   Decoded decode();
   Decoded end_of_file() const;
+  void feed();
+  void leave_out();
   void fail(int error) {
     if (is_exhausted(AVUNERROR(error)) && error != AVERROR(EAGAIN)) failure_ = error;
   }
   bool follows();
+  bool has_index() const { return std::strstr(container_->iformat->name, "mp4") != nullptr; }
   std::int64_t announced_packets() const;
-  TimeNs announced_end_ns() const;
+  std::int64_t index_entries() const { return has_index() ? avformat_index_get_entries_count(&stream()) : 0; }
   TimeNs frame_ns() const {
     if (recorded_frame_ns_ > 0) return recorded_frame_ns_;
     const AVRational rate = stream().avg_frame_rate;
@@ -55,49 +80,97 @@ class VideoFile final : public Source {
   av::Packet packet_{av_packet_alloc()};
   av::Packet sent_{av_packet_alloc()};  // the last one the decoder got: frame_'s where each packet is a picture
   av::ToRgb to_rgb_;
+  Orientation orientation_ = Orientation::kTopLeft;
+  Image<Rgb8> turned_;
+  std::optional<ViewLayout> layout_;
   int stream_ = -1;
+  bool alone_ = false;          // each picture is coded without others
+  bool has_checksums_ = false;  // of FFV1, in each picture so far
   Size size_;
-  std::int64_t announced_ = 0;    // packets; 0 = not announced
-  std::int64_t packets_ = 0;      // whole ones read so far
+  std::int64_t announced_ = 0;  // packets; 0 = not announced
+  std::int64_t packets_ = 0;    // read so far
+  TimeNs first_ns_ = 0, shift_ns_ = 0;
   TimeNs shown_ns_ = 0;           // time of the last picture decoded
   TimeNs recorded_frame_ns_ = 0;  // of our own recordings: from picture to picture; 0: not one
-  TimeNs end_ns_ = 0;             // where the last packet ends
+  std::optional<bool> lacks_bytes_;
   std::uint64_t given_ = 0;
-  int failure_ = 0;       // libav's, where it is not the file's fault
-  bool drained_ = false;  // the decoder was told that nothing follows
-  bool cut_ = false;
+  std::int64_t number_ = 0;
+  std::int64_t left_out_ = 0;                             // damaged pictures, and those that were coded by them
+  int failure_ = 0;                                       // libav's, where it is not the file's fault
+  bool drained_ = false;                                  // the decoder was told that nothing follows
+  bool mending_ = false;                                  // so it was, and then it begins again
+  bool to_key_ = false;                                   // packets are passed over up to one that begins anew
+  bool last_damaged_ = false, last_lacks_bytes_ = false;  // of packets
+  bool read_failed_ = false;
   bool pending_ = false;  // frame_ holds a picture that next() has not given yet
 };
+
+/// A track with a picture that is none of a video: a cover.
+bool is_cover(const AVStream& s) { return (s.disposition & AV_DISPOSITION_ATTACHED_PIC) != 0; }
 
 /// Number `track` of the video streams, or the best of them; below 0 when there is none.
 int video_stream(AVFormatContext* container, std::optional<int> track) {
   if (!track) return av_find_best_stream(container, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   for (unsigned i = 0; i < container->nb_streams; ++i)
-    if (container->streams[i]->codecpar->codec_type == AVMEDIA_TYPE_VIDEO &&
-        (container->streams[i]->disposition & AV_DISPOSITION_ATTACHED_PIC) == 0 && (*track)-- == 0)
+    if (container->streams[i]->codecpar->codec_type == AVMEDIA_TYPE_VIDEO && !is_cover(*container->streams[i]) &&
+        (*track)-- == 0)
       return static_cast<int>(i);
   return -1;
 }
 
-Result<void> VideoFile::open(const std::filesystem::path& path, std::optional<int> track) {
+Orientation orientation_of(const AVStream& stream) {
+  std::array<std::int32_t, 9> matrix{};
+  std::size_t bytes = 0;
+  const std::uint8_t* data = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, &bytes);
+  if (data == nullptr || bytes != sizeof matrix) return Orientation::kTopLeft;
+  std::memcpy(matrix.data(), data, sizeof matrix);
+  return orientation_of_matrix(matrix);
+}
+
+/// Where both views are, as container or codec say it; empty where they say nothing, or that there is one.
+///
+/// `name`   set to what is not read: views in turn, interleaved or as a checkerboard
+std::optional<ViewLayout> layout_of(const AVStream& stream, const AVFrame& frame, std::string& name) {
+  std::size_t bytes = 0;
+  const auto* stereo = reinterpret_cast<const AVStereo3D*>(av_stream_get_side_data(&stream, AV_PKT_DATA_STEREO3D, &bytes));
+  if (stereo == nullptr || stereo->type == AV_STEREO3D_2D)
+    if (const AVFrameSideData* data = av_frame_get_side_data(&frame, AV_FRAME_DATA_STEREO3D); data != nullptr)
+      stereo = reinterpret_cast<const AVStereo3D*>(data->data);
+  if (stereo == nullptr || stereo->type == AV_STEREO3D_2D) return std::nullopt;
+  const bool right_first = (stereo->flags & AV_STEREO3D_FLAG_INVERT) != 0;
+  if (stereo->type == AV_STEREO3D_SIDEBYSIDE) return right_first ? ViewLayout::kRightLeft : ViewLayout::kSideBySide;
+  if (stereo->type == AV_STEREO3D_TOPBOTTOM) return right_first ? ViewLayout::kBottomTop : ViewLayout::kTopBottom;
+  name = av_stereo3d_type_name(static_cast<unsigned>(stereo->type));
+  return std::nullopt;
+}
+
+Result<void> VideoFile::open(const std::filesystem::path& path, std::optional<int> track, const char* format) {
   name_ = path.string();
   if (!frame_ || !packet_ || !sent_) return unreadable(path, AVERROR(ENOMEM), "");
   av::Container opening(avformat_alloc_context());
   if (!opening || !av::allow_only(*opening, kContainers, "file")) return unreadable(path, AVERROR(ENOMEM), "");
   AVFormatContext* context = opening.release();
+  AVDictionary* options = nullptr;
+  if (format != nullptr) av_dict_set(&options, "framerate", "30", 0);  // of JPEGs one after the other, which have no times
   // Frees the context itself when it fails.
-  if (const int e = avformat_open_input(&context, ("file:" + name_).c_str(), nullptr, nullptr); e < 0)
+  const int e = avformat_open_input(&context, ("file:" + name_).c_str(), av_find_input_format(format), &options);
+  av_dict_free(&options);
+  if (e < 0)
     return unreadable(path, e, "it is no picture or video that can be read, or it was cut before its index was written");
   container_.reset(context);
-  if (const int e = av::find_streams(*context); e < 0) return unreadable(path, e, av::reason(e));
+  if (const int found = av::find_streams(*context); found < 0) return unreadable(path, found, av::reason(found));
   stream_ = video_stream(context, track);
   if (stream_ < 0) return unreadable(path, 0, "it holds no video");
   if (const std::string why = av::too_many_pixels({stream().codecpar->width, stream().codecpar->height}); !why.empty())
     return unreadable(path, 0, why);
   for (unsigned i = 0; i < context->nb_streams; ++i)
     context->streams[i]->discard = static_cast<int>(i) == stream_ ? AVDISCARD_DEFAULT : AVDISCARD_ALL;
+  const AVCodecDescriptor* codec = avcodec_descriptor_get(stream().codecpar->codec_id);
+  alone_ = codec != nullptr && (codec->props & AV_CODEC_PROP_INTRA_ONLY) != 0;
   decoder_ = av::open_decoder(stream().codecpar->codec_id, [this](AVCodecContext& decoder) {
     decoder.pkt_timebase = stream().time_base;
+    // Where pictures do not need each other, a damaged one is no more than one that is missing.
+    if (alone_) decoder.err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_EXPLODE;
     return avcodec_parameters_to_context(&decoder, stream().codecpar) >= 0;
   });
   if (!decoder_)
@@ -105,90 +178,132 @@ Result<void> VideoFile::open(const std::filesystem::path& path, std::optional<in
                  fmt::format("cannot read video {}: no decoder for {}", name_, avcodec_get_name(stream().codecpar->codec_id))};
   recorded_frame_ns_ = CaptureMark::frame_ns(*context);
   announced_ = announced_packets();
+  lacks_bytes_ = duo::lacks_bytes(path);
   if (decode() != Decoded::kFrame) return unreadable(path, failure_, "no whole picture at its start");
   pending_ = true;
-  size_ = {frame_->width, frame_->height};
+  orientation_ = orientation_of(stream());
+  size_ = upright({frame_->width, frame_->height}, orientation_);
+  first_ns_ = av::to_ns(frame_->best_effort_timestamp, stream().time_base);
+  to_rgb_.see(*frame_);
+  std::string other_layout;
+  layout_ = layout_of(stream(), *frame_, other_layout);
+  if (!other_layout.empty())
+    return Error{ErrorCode::kUnsupported,
+                 fmt::format("cannot read video {}: it holds its views as '{}', which is not read; convert it to side by side",
+                             name_, other_layout)};
   return {};
 }
 
-/// What the container says of its length: exact in AVI's header and MP4's index.
+int VideoFile::views() const {
+  int same = 0;
+  for (unsigned i = 0; i < container_->nb_streams; ++i) {
+    const AVCodecParameters& other = *container_->streams[i]->codecpar;
+    same += other.codec_type == AVMEDIA_TYPE_VIDEO && !is_cover(*container_->streams[i]) &&
+            other.width == stream().codecpar->width && other.height == stream().codecpar->height;
+  }
+  return same;
+}
+
+TimeNs VideoFile::end_ns() const {
+  const AVStream& s = stream();
+  if (s.duration > 0) return first_ns_ + av::to_ns(s.duration, s.time_base);
+  return container_->duration > 0 ? first_ns_ + av::to_ns(container_->duration, AV_TIME_BASE_Q) : 0;
+}
+
+std::string VideoFile::warning() const {
+  if (left_out_ == 0) return {};
+  return fmt::format("{} picture{} of {} {} damaged: left out", left_out_, left_out_ == 1 ? "" : "s", name_,
+                     left_out_ == 1 ? "is" : "are");
+}
+
+/// What the container says of its length: that of AVI's header counts pictures that did not come, too.
 std::int64_t VideoFile::announced_packets() const {
-  const bool indexed = std::strstr(container_->iformat->name, "mp4") != nullptr;
   // MP4: the index that the demuxer keeps leaves out what an edit list cuts away; nb_frames does not.
-  const std::int64_t in_index = indexed ? avformat_index_get_entries_count(&stream()) : 0;
+  const std::int64_t in_index = index_entries();
   return in_index > 0 ? in_index : std::max<std::int64_t>(stream().nb_frames, 0);
 }
 
-/// Where the video stream should end by the container's durations; 0 when it does not say.
-TimeNs VideoFile::announced_end_ns() const {
-  const AVStream& s = stream();
-  const TimeNs start = av::to_ns(s.start_time, s.time_base);
-  if (s.duration > 0) return start + av::to_ns(s.duration, s.time_base);
-  if (std::strstr(container_->iformat->name, "matroska") == nullptr) return 0;  // elsewhere an estimate from the file size
-  if (const AVDictionaryEntry* tag = av_dict_get(s.metadata, "DURATION", nullptr, 0); tag != nullptr) {
-    int hours = 0, minutes = 0;
-    double seconds = 0;
-    if (std::sscanf(tag->value, "%d:%d:%lf", &hours, &minutes, &seconds) == 3) {
-      const double end_s = hours * 3600.0 + minutes * 60.0 + seconds;
-      return end_s > 0 && end_s * 1e9 < CaptureMark::kMost_ns ? std::llround(end_s * 1e9) : 0;
-    }
-  }
-  // The container's own duration is the longest stream's: ours only when it is alone.
-  return container_->nb_streams == 1 && container_->duration > 0 ? start + av::to_ns(container_->duration, AV_TIME_BASE_Q) : 0;
-}
-
+/// Only missing bytes are a cut: times and numbers of pictures say nothing, cameras give as many as there is light for.
 VideoFile::Decoded VideoFile::end_of_file() const {
-  if (cut_ || packets_ < announced_) return Decoded::kCut;
-  const TimeNs announced_end = announced_ > 0 ? 0 : announced_end_ns();
   // A recording says its length when it is finished.
-  if (recorded_frame_ns_ > 0 && announced_end == 0) return Decoded::kCut;
-  // Half a picture of tolerance: containers round durations to milliseconds.
-  return announced_end > 0 && end_ns_ < announced_end - frame_ns() / 2 ? Decoded::kCut : Decoded::kEnd;
+  const bool unfinished = recorded_frame_ns_ > 0 && container_->duration <= 0;
+  if (read_failed_ || last_lacks_bytes_ || unfinished) return Decoded::kCut;
+  if (lacks_bytes_) return *lacks_bytes_ ? Decoded::kCut : Decoded::kEnd;
+  if (has_index()) return packets_ < index_entries() ? Decoded::kCut : Decoded::kEnd;
+  return last_damaged_ ? Decoded::kCut : Decoded::kEnd;  // it does not say where it ends
 }
 
 /// False for a picture after a hole: with B pictures a file cut may hold one whose predecessors in time were to come later.
 bool VideoFile::follows() {
   const TimeNs t = av::to_ns(frame_->best_effort_timestamp, stream().time_base);
-  const bool hole = drained_ && decoder_->has_b_frames > 0 && t > shown_ns_ + frame_ns() * 3 / 2;
-  shown_ns_ = t;
+  const bool hole = drained_ && decoder_->has_b_frames > 0 && t > shown_ns_ + frame_ns() * 3 / 2 &&
+                    (mending_ || end_of_file() == Decoded::kCut);
+  if (!hole) shown_ns_ = t;
   return !hole;
+}
+
+/// The picture that does not decode, and with it those that are coded by it.
+void VideoFile::leave_out() {
+  ++left_out_;
+  last_damaged_ = true;
+  if (drained_) return;
+  to_key_ = true;
+  if (alone_) return;
+  // What the decoder holds back is whole: it is still given.
+  mending_ = drained_ = true;
+  avcodec_send_packet(decoder_.get(), nullptr);
+}
+
+/// Gives the decoder the next packet, or the end.
+void VideoFile::feed() {
+  const int read = av_read_frame(container_.get(), packet_.get());
+  if (read < 0) {
+    fail(read);
+    read_failed_ = read != AVERROR_EOF;
+    drained_ = true;
+    avcodec_send_packet(decoder_.get(), nullptr);
+    return;
+  }
+  if (packet_->stream_index != stream_) return av_packet_unref(packet_.get());
+  ++packets_;
+  last_damaged_ = false;
+  last_lacks_bytes_ = (packet_->flags & AV_PKT_FLAG_CORRUPT) != 0;
+  const bool passed = to_key_ && (packet_->flags & AV_PKT_FLAG_KEY) == 0;
+  const bool checks = decoder_->codec_id == AV_CODEC_ID_FFV1 && ffv1_checks(*packet_);
+  has_checksums_ |= checks;
+  if (passed || last_lacks_bytes_ || (has_checksums_ && !checks)) {
+    av_packet_unref(packet_.get());
+    return passed ? static_cast<void>(++left_out_) : leave_out();
+  }
+  to_key_ = false;
+  const int sent = avcodec_send_packet(decoder_.get(), packet_.get());
+  av_packet_unref(sent_.get());
+  av_packet_move_ref(sent_.get(), packet_.get());
+  if (sent >= 0) return;
+  fail(sent);
+  leave_out();
 }
 
 /// Decodes the next whole picture into frame_.
 VideoFile::Decoded VideoFile::decode() {
-  while (true) {
+  while (failure_ == 0) {
     const int received = avcodec_receive_frame(decoder_.get(), frame_.get());
-    if (received == AVERROR_EOF) return end_of_file();
-    if (received >= 0 && !av::is_damaged(*frame_) && follows()) return Decoded::kFrame;
-    if (received < 0) fail(received);
-    if (received != AVERROR(EAGAIN)) return cut_ = true, Decoded::kCut;
-    if (drained_) return Decoded::kCut;
-
-    const int read = av_read_frame(container_.get(), packet_.get());
-    const bool whole = read >= 0 && (packet_->flags & AV_PKT_FLAG_CORRUPT) == 0;
-    if (whole && packet_->stream_index != stream_) {
-      av_packet_unref(packet_.get());
-      continue;
-    }
-    if (whole) {
-      ++packets_;
-      const std::int64_t start = packet_->pts != AV_NOPTS_VALUE ? packet_->pts : packet_->dts;
-      const TimeNs duration = packet_->duration > 0 ? av::to_ns(packet_->duration, stream().time_base) : frame_ns();
-      end_ns_ = std::max(end_ns_, av::to_ns(start, stream().time_base) + duration);
-    }
-    if (read < 0) fail(read);
-    cut_ = !whole && read != AVERROR_EOF;
-    drained_ = !whole;
-    const int sent = avcodec_send_packet(decoder_.get(), whole ? packet_.get() : nullptr);
-    av_packet_unref(sent_.get());
-    av_packet_move_ref(sent_.get(), packet_.get());
-    if (sent < 0) fail(sent);
-    if (sent < 0 && sent != AVERROR_EOF) {
-      // What the decoder holds back is whole: it is still given.
-      cut_ = drained_ = true;
-      avcodec_send_packet(decoder_.get(), nullptr);
+    if (received >= 0 && !av::is_damaged(*frame_)) {
+      if (follows()) return Decoded::kFrame;
+      if (!mending_) return Decoded::kCut;
+      ++left_out_;
+    } else if (received == AVERROR(EAGAIN)) {
+      feed();
+    } else if (received == AVERROR_EOF) {
+      if (!std::exchange(mending_, false)) return end_of_file();
+      drained_ = false;
+      avcodec_flush_buffers(decoder_.get());
+    } else {
+      fail(received);
+      leave_out();
     }
   }
+  return Decoded::kCut;
 }
 
 Result<Next> VideoFile::next(Picture& into) {
@@ -197,28 +312,33 @@ Result<Next> VideoFile::next(Picture& into) {
   if (failure_ != 0) return av::input_error("video " + name_, failure_, "");
   if (decoded == Decoded::kEnd) return Next::kEnd;
   if (decoded == Decoded::kCut) return Next::kCut;
-  if (Size{frame_->width, frame_->height} != size_)
+  if (upright({frame_->width, frame_->height}, orientation_) != size_)
     return Error{ErrorCode::kUnsupported,
                  fmt::format("cannot read video {}: its pictures change size at number {}", name_, given_)};
+  to_rgb_.see(*frame_);
   if (!to_rgb_.convert(*frame_, into.pixels))
     return Error{ErrorCode::kUnsupported,
                  fmt::format("cannot read video {}: its size or kind of pixels is not supported", name_)};
+  put_upright(into.pixels, orientation_, turned_);
   into.t_ns = av::to_ns(frame_->best_effort_timestamp, stream().time_base);
   into.sequence = given_++;
+  number_ = packets_ - 1;
   into.jpeg.clear();
-  if (decoder_->codec_id == AV_CODEC_ID_MJPEG) into.jpeg.assign(sent_->data, sent_->data + sent_->size);
+  if (decoder_->codec_id == AV_CODEC_ID_MJPEG && orientation_ == Orientation::kTopLeft)
+    into.jpeg.assign(sent_->data, sent_->data + sent_->size);
   if (const auto mark = CaptureMark::of(*sent_)) {
     into.t_ns = mark->t_ns;
     into.sequence = mark->sequence;
   }
+  into.t_ns += shift_ns_;
   return Next::kNew;
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Source>> open_video(const std::filesystem::path& path, std::optional<int> track) {
+Result<std::unique_ptr<Source>> open_video(const std::filesystem::path& path, std::optional<int> track, const char* format) {
   auto video = std::make_unique<VideoFile>();
-  DUO_TRY(video->open(path, track));
+  DUO_TRY(video->open(path, track, format));
   return std::unique_ptr<Source>(std::move(video));
 }
 

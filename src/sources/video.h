@@ -8,13 +8,14 @@
 
 namespace duo {
 
-/// Opens a video stream of AVI, Matroska/WebM, MP4/MOV or MPEG-TS/PS: the one that players choose, or number `track` of its
-/// video streams.
+/// Opens a video stream of AVI, Matroska/WebM, MP4/MOV, MPEG-TS/PS or of JPEGs one after the other: the one that players
+/// choose, or number `track` of its video streams. `format`: libav's name of the container, where its beginning does not tell.
 ///
-/// A file cut short, or damaged, gives its pictures up to there and then Next::kCut: seen by a packet that is not whole, a
-/// picture that does not decode, or fewer pictures than the container announces. A partly decoded picture is never given.
+/// A file that lacks bytes at its end gives its whole pictures and then Next::kCut. A picture that is damaged, or coded by one
+/// that is, is left out and counted (Source::warning()); a partly decoded one is never given.
 ///
-/// Errors  not a video; no picture can be decoded from its start
-Result<std::unique_ptr<Source>> open_video(const std::filesystem::path& path, std::optional<int> track = {});
+/// Errors  not a video; no picture can be decoded from its start; views that are neither halves nor tracks
+Result<std::unique_ptr<Source>> open_video(const std::filesystem::path& path, std::optional<int> track = {},
+                                           const char* format = nullptr);
 
 }  // namespace duo

@@ -148,7 +148,7 @@ TEST_F(Cli, CutVideoGivesItsWholeFrames) {
   test::write_video(at("v.avi"), AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P, 0);
   const std::string whole = bytes_of(at("v.avi"));
   put(at("cut.avi"), std::string_view(whole).substr(0, whole.size() / 2));
-  const Ended ended = run("depth cut.avi --max-disparity 16 -o out");  // both views side by side in one file
+  const Ended ended = run("depth cut.avi --layout side-by-side --max-disparity 16 -o out");
   EXPECT_EQ(ended.exit, kCut);
   EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
   EXPECT_NE(ended.err.find("cut.avi is cut short"), std::string::npos) << ended.err;

@@ -55,6 +55,16 @@ class Record : public ::testing::Test {
   static Ended run(const std::string& arguments, const std::string& before = "") {
     return test::run_tool(at(""), arguments, before);
   }
+  /// A gst-launch-1.0 for the tool: black pictures at 50 a second for a second, then nothing, and it does not end.
+  static std::string with_camera_that_falls_silent() {
+    put(at("gst-launch-1.0"),
+        "#!/bin/sh\nprintf 'YUV4MPEG2 W16 H16 F50:1 Ip A1:1 C444\\n'\n"
+        "for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 "
+        "40; do\n"
+        "  printf 'FRAME\\n'; head -c 768 /dev/zero; sleep 0.02\ndone\nexec sleep 1000\n");
+    fs::permissions(at("gst-launch-1.0"), fs::perms::owner_all);
+    return "PATH='" + at("").string() + "':$PATH";
+  }
   static void expect_failure(const std::string& arguments, int exit, const std::string& words, const std::string& before = "") {
     SCOPED_TRACE(arguments);
     const Ended ended = run(arguments, before);
@@ -243,6 +253,14 @@ TEST(RecordWithSkew, DepthAndTrackHaveTheSameDisparities) {
   }
   EXPECT_EQ(differ, 0);
   EXPECT_GT(moved, 20);
+}
+
+/// Pictures that do not come any more keep no recording open.
+TEST_F(Record, SecondsEndByTheClock) {
+  const Ended ended = run("record gst:a gst:b -o silent.mkv --seconds 2 --json", with_camera_that_falls_silent());
+  ASSERT_EQ(ended.exit, 0) << ended.err;
+  EXPECT_GT(ended.json().value("pairs", 0), 0);
+  EXPECT_LT(ended.json().value("length_s", 9.0), 2);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "core/check.h"
 #include "duoptic/bounded_queue.h"
 #include "duoptic/worker.h"
-#include "sources/live/pairing.h"
+#include "sources/pairing.h"
 
 namespace duo {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 class LivePairs final : public PairSource {
  public:
   LivePairs(std::unique_ptr<Source> left, std::unique_ptr<Source> right)
-      : sources_{std::move(left), std::move(right)}, pairing_(std::min(sources_[0]->frame_s(), sources_[1]->frame_s())) {}
+      : sources_{std::move(left), std::move(right)}, pairing_({sources_[0]->frame_s(), sources_[1]->frame_s()}) {}
 
   Result<void> start() {
     for (const CameraSide side : {CameraSide::kLeft, CameraSide::kRight}) {
@@ -64,9 +64,19 @@ class LivePairs final : public PairSource {
         break;
       }
       const std::lock_guard lock(mutex_);
-      if (pairing_.add(side, picture, paired_) && !pairs_.put(paired_)) break;
+      pairing_.put(side, picture);
+      if (!give()) break;
     }
     return {};
+  }
+
+  /// What can be paired now; false where nobody takes pairs any more.
+  bool give() {
+    while (true) {
+      const Pairing::Step step = pairing_.step(paired_);
+      if (step == Pairing::Step::kMore) return true;
+      if (step == Pairing::Step::kPair && !pairs_.put(paired_)) return false;
+    }
   }
 
   const std::array<std::unique_ptr<Source>, 2> sources_;

@@ -1,10 +1,11 @@
 // When pictures were taken, and which belong together; at the end two cameras in threads.
 #include <random>
 
+#include "sources/arrival_clock.h"
 #include "sources/camera/camera.h"
 #include "sources/camera/clock_model.h"
 #include "sources/live/live_pairs.h"
-#include "sources/live/pairing.h"
+#include "sources/pairing.h"
 #include "tests/camera_desk.h"
 
 namespace duo {
@@ -59,11 +60,14 @@ Picture taken_at(double ms, std::uint64_t n = 0) {
 }
 
 TEST(Pairs, TheNearestWithinHalfAFrameAndEachOnce) {
-  Pairing pairing(1.0 / 30);
+  Pairing pairing({1.0 / 30, 1.0 / 30});
   Pair pair;
   const auto add = [&](CameraSide side, double ms) {
     Picture picture = taken_at(ms);
-    return pairing.add(side, picture, pair);
+    pairing.put(side, picture);
+    Pairing::Step step = Pairing::Step::kAlone;
+    while (step == Pairing::Step::kAlone) step = pairing.step(pair);
+    return step == Pairing::Step::kPair;
   };
   const auto expect_pair = [&](double left_ms, double right_ms) {
     EXPECT_EQ(pair.left.t_ns, std::llround(left_ms * 1e6));
@@ -73,7 +77,7 @@ TEST(Pairs, TheNearestWithinHalfAFrameAndEachOnce) {
   EXPECT_FALSE(add(CameraSide::kLeft, 33.3));
   EXPECT_TRUE(add(CameraSide::kRight, 23.3));  // nearer to the second
   expect_pair(33.3, 23.3);
-  EXPECT_EQ(pairing.lonely(), 1);
+  EXPECT_EQ(pairing.alone(CameraSide::kLeft), 1);
   EXPECT_FALSE(add(CameraSide::kRight, 56.6));
   EXPECT_TRUE(add(CameraSide::kLeft, 66.6));
   expect_pair(66.6, 56.6);
@@ -84,6 +88,82 @@ TEST(Pairs, TheNearestWithinHalfAFrameAndEachOnce) {
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(add(CameraSide::kLeft, 133 + 33.3 * i));  // the right camera is away
   EXPECT_TRUE(add(CameraSide::kRight, 440));
   expect_pair(133 + 33.3 * 9, 440);
+}
+
+/// Pairs of two cameras whose pictures come in the order of their times; with how many of each side.
+struct Paired {
+  std::vector<double> skews_ms;
+  std::int64_t left_alone, right_alone;
+};
+Paired pair_all(std::vector<double> lefts_ms, std::vector<double> rights_ms) {
+  Pairing pairing({1.0 / 25, 1.0 / 25});  // no camera here keeps to what it says
+  Paired out{};
+  Pair pair;
+  for (std::size_t l = 0, r = 0; l < lefts_ms.size() || r < rights_ms.size();) {
+    const bool left = r == rights_ms.size() || (l < lefts_ms.size() && lefts_ms[l] <= rights_ms[r]);
+    Picture picture = taken_at(left ? lefts_ms[l++] : rights_ms[r++]);
+    pairing.put(left ? CameraSide::kLeft : CameraSide::kRight, picture);
+    for (Pairing::Step step = Pairing::Step::kAlone; step != Pairing::Step::kMore;) {
+      step = pairing.step(pair);
+      if (step == Pairing::Step::kPair) out.skews_ms.push_back(static_cast<double>(pair.right.t_ns - pair.left.t_ns) * 1e-6);
+    }
+  }
+  out.left_alone = pairing.alone(CameraSide::kLeft) + static_cast<std::int64_t>(pairing.waiting(CameraSide::kLeft));
+  out.right_alone = pairing.alone(CameraSide::kRight) + static_cast<std::int64_t>(pairing.waiting(CameraSide::kRight));
+  return out;
+}
+std::vector<double> every(double step_ms, int count, double from_ms = 0) {
+  std::vector<double> times;
+  for (int i = 0; i < count; ++i) times.push_back(from_ms + step_ms * i);
+  return times;
+}
+
+TEST(Pairs, EveryPhaseOfTwoSlowCamerasAndOfTimesThatJitter) {
+  constexpr double kFrame_ms = 1000.0 / 15;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> jitter_ms(-2, 2);
+  for (int phase = 0; phase < 67; phase += 3) {
+    std::vector<double> lefts = every(kFrame_ms, 150), rights = every(kFrame_ms, 150, phase);
+    for (double& t : lefts) t += jitter_ms(random);
+    for (double& t : rights) t += jitter_ms(random);
+    const Paired paired = pair_all(lefts, rights);
+    EXPECT_GE(paired.skews_ms.size(), 143u) << phase;
+    for (const double skew : paired.skews_ms) EXPECT_LT(std::abs(skew), 0.61 * kFrame_ms) << phase;
+  }
+}
+
+TEST(Pairs, UnlikeRatesAndLostPictures) {
+  // 30 and 20 a second: each of the slower ones, 0 or a sixtieth of a second apart.
+  const Paired unlike = pair_all(every(100.0 / 3, 90), every(50, 60));
+  EXPECT_EQ(unlike.skews_ms.size(), 60u);
+  EXPECT_EQ(unlike.left_alone, 30);
+  for (const double skew : unlike.skews_ms) EXPECT_LT(std::abs(skew), 16.8);
+  // One left picture is missing, and every seventh right one: no other picture takes their places.
+  std::vector<double> lefts = every(100.0 / 3, 70), rights = lefts;
+  lefts.erase(lefts.begin() + 31);
+  for (int i = 63; i >= 0; i -= 7) rights.erase(rights.begin() + i);
+  const Paired lossy = pair_all(lefts, rights);
+  EXPECT_EQ(lossy.skews_ms.size(), 59u);
+  EXPECT_EQ(lossy.left_alone, 10);
+  EXPECT_EQ(lossy.right_alone, 1);
+  for (const double skew : lossy.skews_ms) EXPECT_EQ(skew, 0);
+}
+
+TEST(Clock, ArrivalsTellRateAndTimesOfANetworkCamera) {
+  constexpr double kFrame_ms = 1000.0 / 15;
+  std::mt19937 random(2);
+  std::exponential_distribution<double> late_ms(1 / 3.0);
+  ArrivalClock clock(0);
+  double worst_ms = 0;
+  for (int n = 0; n < 600; ++n) {
+    if (n % 50 == 33) continue;  // lost on the way
+    const double stall_ms = n % 40 == 20 ? 45 : 0;
+    const double taken_ms = 1000 + kFrame_ms * n;
+    const TimeNs given_ns = clock.capture_ns(std::llround((taken_ms + late_ms(random) + stall_ms) * 1e6));
+    if (n > 100) worst_ms = std::max(worst_ms, std::abs(static_cast<double>(given_ns) * 1e-6 - taken_ms - 3));
+  }
+  EXPECT_NEAR(clock.frame_s(), 1.0 / 15, 0.003);
+  EXPECT_LT(worst_ms, 3);
 }
 
 /// Two cameras in threads, on a clock ten times as fast as the machine's: whatever the threads do, a pair's pictures are the

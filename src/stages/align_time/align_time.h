@@ -15,7 +15,7 @@ namespace duo::ref {
 /// Shape    pictures H x W; skew: right capture time - left capture time
 /// Reach    28 px per picture at 640x480, in proportion at other sizes; what moves faster stays where it is
 /// Exact    integers but for the fraction of the frame time: the same bits on every machine
-/// Memory   allocated at the first pair with a skew, and when the size changes
+/// Memory   allocated at the first pair with a skew, from which on every pair is kept for the next, and when the size changes
 /// Threads  one caller
 /// Source   blocks by exhaustive search (block_flow.h); the compensation is ours
 class AlignTime {

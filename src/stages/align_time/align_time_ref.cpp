@@ -36,7 +36,7 @@ struct AlignTime::State {
   std::vector<Way> landed;  // of each cell: the way of what is there at the left picture's moment
   Image<Rgb8> last, moved;  // the right camera's picture before, and the one that is handed out
   TimeNs last_ns = 0;
-  bool has_last = false;
+  bool has_last = false, ever_skewed = false;
 
   void resize(Size size) {
     if (last.size() == size) return;
@@ -84,17 +84,18 @@ struct AlignTime::State {
 AlignTime::AlignTime() : state_(std::make_unique<State>()) {}
 AlignTime::~AlignTime() = default;
 
-/// Takes the right picture in; false when its skew is none to be put right.
+/// Takes the right picture in; false when its skew is none to be put right, and then the pair is kept for the next.
 bool AlignTime::see(const Pair& pair) {
   constexpr TimeNs kShortest_ns = 200'000;  // of a skew: in less an arm moves by a fraction of a millimetre
   const TimeNs skew_ns = pair.right.t_ns - pair.left.t_ns;
-  if (std::abs(skew_ns) < kShortest_ns || std::abs(skew_ns) > kLongestGap_ns) {
-    state_->has_last = false;
-    return false;
-  }
+  const bool skewed = std::abs(skew_ns) >= kShortest_ns && std::abs(skew_ns) <= kLongestGap_ns;
+  state_->ever_skewed |= skewed;
+  if (!state_->ever_skewed) return false;
+  // Cameras of unlike rates are together in one pair and apart in the next, which needs the one before it.
   state_->resize(pair.right.pixels.size());
   state_->flow.see(pair.right.pixels);
-  return true;
+  if (!skewed) keep(pair);
+  return skewed;
 }
 
 /// For the next pair.

@@ -1,0 +1,39 @@
+// What a picture's bytes say before they are decoded: where a JPEG ends, its parts, orientation, and what no decoder here
+// reads.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "duoptic/source.h"
+#include "sources/orientation.h"
+
+namespace duo {
+
+bool is_jpeg(std::string_view bytes);
+
+/// Length of the JPEG that `bytes` begin with; npos where its end is not among them.
+std::size_t jpeg_length(std::string_view bytes);
+
+/// True where another JPEG follows the first, and the first does not say what that is: a video.
+bool is_jpeg_sequence(std::string_view bytes);
+
+/// The two views of an MPO (CIPA DC-007), left first; empty where `bytes` are none. Panoramas, previews and the gain maps of
+/// phones are no views.
+std::vector<std::string_view> views_of_mpo(std::string_view bytes);
+
+/// The orientation that a JPEG, PNG, WebP or TIFF asks for.
+Orientation orientation_of(std::string_view bytes);
+
+/// The layout that a JPS says in its marker; by the format's habit the right view comes first.
+std::optional<ViewLayout> layout_of_jps(std::string_view bytes, bool named_jps);
+
+/// "" or what the picture has that is not read: an unsupported kind is not a damaged file.
+std::string unsupported_in(std::string_view bytes);
+
+/// Name of a kind of pictures of which nothing is read ("HEIC"), by its first bytes; empty for all else.
+std::string_view foreign_kind(std::string_view head);
+
+}  // namespace duo

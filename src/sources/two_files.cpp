@@ -1,0 +1,156 @@
+#include "sources/two_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "sources/pairing.h"
+
+namespace duo {
+namespace {
+
+FileSource* as_file(const std::unique_ptr<Source>& source) { return dynamic_cast<FileSource*>(source.get()); }
+
+class TwoFiles : public PairSource {
+ public:
+  explicit TwoFiles(TwoViews views) : views_(std::move(views)) {
+    FileSource *left = as_file(views_.sources[0]), *right = as_file(views_.sources[1]);
+    if (left != nullptr && right != nullptr) left->scale_as(*right);
+  }
+  Size size() const override { return left().size(); }
+  std::int64_t count() const override { return std::min(left().count(), right().count()); }
+  bool still() const override { return left().still(); }
+  double frame_s() const override { return std::max(left().frame_s(), right().frame_s()); }
+  std::string warning() const override {
+    std::string all;
+    const auto add = [&](const std::string& text) { all += (all.empty() || text.empty() ? "" : "; ") + text; };
+    for (const std::string& note : notes_) add(note);
+    add(left().warning());
+    if (views_.names[0] != views_.names[1] || left().warning() != right().warning()) add(right().warning());
+    return all;
+  }
+
+ protected:
+  Source& left() const { return *views_.sources[0]; }
+  Source& right() const { return *views_.sources[1]; }
+  void note(std::string text) { notes_.push_back(std::move(text)); }
+  /// What is to be said where the files end.
+  Next end(Next left, Next right, std::uint64_t pairs) {
+    if (left == Next::kCut || right == Next::kCut) {
+      note(fmt::format("{} is cut short or damaged after {} whole pictures", views_.names[left == Next::kCut ? 0 : 1], pairs));
+      return Next::kCut;
+    }
+    if (left != right)
+      note(fmt::format("{} ends after {} pictures, the other file goes on", views_.names[left == Next::kEnd ? 0 : 1], pairs));
+    return Next::kEnd;
+  }
+
+  TwoViews views_;
+
+ private:
+  std::vector<std::string> notes_;
+};
+
+class PairsByNumber final : public TwoFiles {
+ public:
+  PairsByNumber(TwoViews views, std::optional<RecordingHead> head) : TwoFiles(std::move(views)), head_(std::move(head)) {}
+  std::int64_t count() const override { return head_ ? head_->pairs : TwoFiles::count(); }
+  std::optional<Rig> rig() const override { return head_ ? head_->rig : std::nullopt; }
+  Result<Next> next(Pair& into) override {
+    DUO_TRY_ASSIGN(Next left_next, left().next(into.left));
+    DUO_TRY_ASSIGN(Next right_next, right().next(into.right));
+    const FileSource *l = as_file(views_.sources[0]), *r = as_file(views_.sources[1]);
+    while (l != nullptr && r != nullptr && left_next == Next::kNew && right_next == Next::kNew &&
+           l->number() != r->number()) {
+      const bool left_behind = l->number() < r->number();
+      DUO_TRY_ASSIGN((left_behind ? left_next : right_next), left_behind ? left().next(into.left) : right().next(into.right));
+    }
+    into.sequence = given_;
+    if (left_next != Next::kNew || right_next != Next::kNew) return end(left_next, right_next, given_);
+    ++given_;
+    return Next::kNew;
+  }
+
+ private:
+  std::optional<RecordingHead> head_;
+  std::uint64_t given_ = 0;
+};
+
+class PairsByTime final : public TwoFiles {
+ public:
+  PairsByTime(TwoViews views, TimeNs skew_ns) : TwoFiles(std::move(views)), pairing_({left().frame_s(), right().frame_s()}) {
+    FileSource *l = as_file(views_.sources[0]), *r = as_file(views_.sources[1]);
+    if (l == nullptr || r == nullptr) return;
+    const bool apart = (l->end_ns() > 0 && r->first_ns() + skew_ns > l->end_ns()) ||
+                       (r->end_ns() > 0 && l->first_ns() > r->end_ns() + skew_ns);
+    if (l->any_origin() != r->any_origin() || (apart && skew_ns == 0)) {
+      if (apart) note("the times of both files have nothing in common: both are taken to begin together");
+      l->shift_times(-l->first_ns());
+      r->shift_times(-r->first_ns());
+    }
+    r->shift_times(skew_ns);
+  }
+
+  Result<Next> next(Pair& into) override {
+    while (true) {
+      DUO_TRY(read_ahead(CameraSide::kLeft));
+      DUO_TRY(read_ahead(CameraSide::kRight));
+      if (pairing_.waiting(CameraSide::kLeft) == 0 || pairing_.waiting(CameraSide::kRight) == 0) return end_of_pairs();
+      if (pairing_.step(into) != Pairing::Step::kPair) continue;
+      ++given_;
+      return Next::kNew;
+    }
+  }
+
+ private:
+  /// As many of a side that the nearest one and the rate are known.
+  Result<void> read_ahead(CameraSide side) {
+    const auto i = static_cast<std::size_t>(side);
+    while (ends_[i] == Next::kNew && pairing_.waiting(side) < kAhead) {
+      DUO_TRY_ASSIGN(ends_[i], views_.sources[i]->next(picture_));
+      if (ends_[i] == Next::kNew) pairing_.put(side, picture_);
+    }
+    return {};
+  }
+
+  Result<Next> end_of_pairs() {
+    if (given_ == 0 && ends_[0] != Next::kCut && ends_[1] != Next::kCut)
+      return Error{ErrorCode::kBadInput,
+                   fmt::format("cannot pair {} with {}: no picture of one was taken when one of the other was; --skew-ms says "
+                               "how much later the right ones were taken than their times say",
+                               views_.names[0], views_.names[1])};
+    std::array<std::int64_t, 2> alone{};
+    std::array<Next, 2> ends = ends_;
+    for (const CameraSide side : {CameraSide::kLeft, CameraSide::kRight}) {
+      const auto i = static_cast<std::size_t>(side);
+      const std::size_t waiting = pairing_.waiting(side);
+      const bool goes_on = waiting > 1 && ends_[i] != Next::kCut;  // else it is one that came late
+      if (goes_on) ends[i] = Next::kNew;
+      alone[i] = pairing_.alone(side) + (goes_on ? 0 : static_cast<std::int64_t>(waiting));
+    }
+    if (alone[0] + alone[1] > 0)
+      note(fmt::format("without a partner at its time, and left out: {} of {} left pictures, {} of {} right ones", alone[0],
+                       pairing_.put_so_far(CameraSide::kLeft), alone[1], pairing_.put_so_far(CameraSide::kRight)));
+    return end(ends[0], ends[1], given_);
+  }
+
+  static constexpr std::size_t kAhead = 4;
+  Pairing pairing_;
+  std::array<Next, 2> ends_ = {Next::kNew, Next::kNew};
+  Picture picture_;
+  std::uint64_t given_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<PairSource> pair_by_number(TwoViews views, std::optional<RecordingHead> head) {
+  return std::make_unique<PairsByNumber>(std::move(views), std::move(head));
+}
+
+std::unique_ptr<PairSource> pair_by_time(TwoViews views, TimeNs skew_ns) {
+  return std::make_unique<PairsByTime>(std::move(views), skew_ns);
+}
+
+}  // namespace duo
