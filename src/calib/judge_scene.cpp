@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "calib/scene_pose.h"
-#include "core/statistics.h"
+#include "duoptic/statistics.h"
 
 namespace duo {
 namespace {

@@ -39,7 +39,7 @@ class TenASecond final : public PairSource {
     into.right.pixels = (swapped_ ? pair.left : pair.right).pixels.clone();
     into.left.t_ns = into.right.t_ns = given_ * TimeNs{100'000'000};
     into.sequence = static_cast<std::uint64_t>(given_++);
-    return Next::kPicture;
+    return Next::kNew;
   }
 
  private:
@@ -66,7 +66,7 @@ int news_at(Pipeline& pipeline) {
       EXPECT_EQ(pipeline.rig_news(), pipeline.rig_fit()->what);
       at = i;
     }
-    if (!next || *next != Next::kPicture) return at;
+    if (!next || *next != Next::kNew) return at;
   }
 }
 
