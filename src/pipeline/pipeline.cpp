@@ -118,7 +118,7 @@ Result<void> Pipeline::State::start() {
 Result<void> Pipeline::State::look_at_rig(Next next) {
   rig_news = false;
   if (next == Next::kNothing) return {};
-  DUO_TRY_ASSIGN(rig_news, next == Next::kNew ? watch.see(pair, source().still()) : watch.end());
+  rig_news = next == Next::kNew ? watch.see(pair, source().still()) : watch.end();
   rig_news = rig_news && !watch.fit()->what.empty();
   if (setup.check == RigCheck::kStrict && rig_news) return Error{ErrorCode::kBadInput, watch.fit()->what};
   return {};

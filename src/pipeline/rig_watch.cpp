@@ -1,6 +1,7 @@
 #include "pipeline/rig_watch.h"
 
 #include <chrono>
+#include <string>
 #include <utility>
 
 namespace duo {
@@ -11,42 +12,42 @@ constexpr TimeNs kBetween_ns = 300'000'000, kKnown_ns = 900'000'000, kAgain_ns =
 
 }  // namespace
 
-Result<bool> RigWatch::see(const std::shared_ptr<const Pair>& pair, bool last) {
+bool RigWatch::see(const std::shared_ptr<const Pair>& pair, bool last) {
   if (!on_) return false;
-  if (pairs_.empty() && !judged_) start_ns_ = pair->left.t_ns;
+  if (pairs_.empty() && !started_) start_ns_ = pair->left.t_ns;
   const TimeNs since_ns = pair->left.t_ns - start_ns_;
-  if (!judged_) {
+  if (!started_) {
     if (since_ns >= static_cast<TimeNs>(pairs_.size()) * kBetween_ns) pairs_.push_back(pair);
-    if (pairs_.size() == kWatchedPairs || since_ns >= kKnown_ns || last) DUO_TRY(start());
+    if (pairs_.size() == kWatchedPairs || since_ns >= kKnown_ns || last) start();
   }
   if (last || (!live_ && since_ns >= kKnown_ns)) return take();
   if (!live_) return false;
-  if (since_ns >= kAgain_ns && !worker_.started()) {
-    judged_ = false;
-    start_ns_ = pair->left.t_ns;
-  }
-  return worker_.started() && worker_.ends_within(std::chrono::nanoseconds(0)) ? take() : false;
+  if (since_ns >= kAgain_ns && !waiting_) started_ = false;
+  return waiting_ && (!worker_.started() || worker_.ends_within(std::chrono::nanoseconds(0))) && take();
 }
 
-Result<bool> RigWatch::end() {
-  if (!judged_ && !pairs_.empty()) DUO_TRY(start());
+bool RigWatch::end() {
+  if (!started_ && !pairs_.empty()) start();
   return take();
 }
 
-Result<void> RigWatch::start() {
-  judged_ = true;
+void RigWatch::start() {
+  started_ = waiting_ = true;
   found_ = std::make_shared<RigFit>();
-  auto work = [found = found_, rig = rig_, pairs = std::exchange(pairs_, {})](const std::stop_token&) -> Result<void> {
+  const auto work = [found = found_, rig = rig_, pairs = std::exchange(pairs_, {})](const std::stop_token&) -> Result<void> {
     *found = rig_fit(rig, pairs, 1);
     return {};
   };
-  DUO_TRY_ASSIGN(worker_, Worker::start("see whether the rig fits", std::move(work)));
-  return {};
+  const std::string what = "see whether the rig fits";
+  if (auto worker = Worker::start(what, work))
+    worker_ = std::move(*worker);
+  else
+    static_cast<void>(without_exceptions(what, [&] { return work({}); }));
 }
 
-Result<bool> RigWatch::take() {
-  if (!worker_.started()) return false;
-  DUO_TRY(std::exchange(worker_, {}).join());
+bool RigWatch::take() {
+  if (!std::exchange(waiting_, false)) return false;
+  if (worker_.started() && !std::exchange(worker_, {}).join()) *found_ = {};
   const bool news = !fit_ || fit_->verdict != found_->verdict;
   fit_ = std::move(*found_);
   return news;

@@ -13,7 +13,8 @@
 namespace duo {
 
 /// Judges by three pairs of the first second, in a thread of its own; of a live source again every minute. Of files what it
-/// finds is there from the same pair on in every run: the first that comes 0.9 s after the first, or the end.
+/// finds is there from the same pair on in every run: the first that comes 0.9 s after the first, or the end. Where the system
+/// gives no thread the caller's judges; where it gives no memory nothing is found.
 ///
 /// Threads  one caller
 class RigWatch {
@@ -22,23 +23,22 @@ class RigWatch {
   RigWatch(std::optional<Rig> rig, bool live) : rig_(std::move(rig)), on_(true), live_(live) {}
 
   /// The next pair; `last`: no other will come. Whether fit() is new by it.
-  ///
-  /// Errors  the system gives no thread; no memory
-  Result<bool> see(const std::shared_ptr<const Pair>& pair, bool last);
+  bool see(const std::shared_ptr<const Pair>& pair, bool last);
   /// No pair will come. Whether fit() is new by it.
-  Result<bool> end();
+  bool end();
 
   /// Empty until pairs were judged.
   const std::optional<RigFit>& fit() const { return fit_; }
 
  private:
-  Result<void> start();
-  Result<bool> take();
+  void start();
+  bool take();
 
   std::optional<Rig> rig_;
   bool on_ = false, live_ = false;
-  TimeNs start_ns_ = 0;  // of the pairs that are looked at
-  bool judged_ = false;  // these pairs, or they are being judged
+  TimeNs start_ns_ = 0;   // of the pairs that are looked at
+  bool started_ = false;  // to judge these pairs, now or before
+  bool waiting_ = false;  // for what comes of it
   std::vector<std::shared_ptr<const Pair>> pairs_;
   std::optional<RigFit> fit_;
   std::shared_ptr<RigFit> found_;  // the worker's

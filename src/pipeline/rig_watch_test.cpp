@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "duoptic/pipeline.h"
 #include "duoptic/synthetic.h"
@@ -91,6 +94,30 @@ TEST(RigWatch, TheRightRigIsNoNews) {
   Pipeline untold = watching(std::make_unique<TenASecond>(12, rolled_rig()), RigCheck::kNone);
   EXPECT_EQ(news_at(untold), -1);
   EXPECT_FALSE(untold.rig_fit());
+}
+
+TEST(RigWatch, LiveItIsLookedAtAgainEveryMinute) {
+  RigWatch watch(watched_room().rig, true);
+  const auto pair_at = [](double t_s, bool swapped) {
+    auto pair = std::make_shared<Pair>();
+    const Pair& room = watched_room().pair;
+    pair->left.pixels = (swapped ? room.right : room.left).pixels.clone();
+    pair->right.pixels = (swapped ? room.left : room.right).pixels.clone();
+    pair->left.t_ns = static_cast<TimeNs>(t_s * 1e9);
+    return pair;
+  };
+  /// A second from `t_s` on, then as long as it takes, but no minute of the source's time.
+  const auto news_from = [&](double t_s, bool swapped) {
+    for (int i = 0; i < 2000; ++i) {
+      if (watch.see(pair_at(t_s + 0.1 * std::min(i, 10), swapped), false)) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  };
+  EXPECT_TRUE(news_from(0, false));
+  EXPECT_EQ(watch.fit()->verdict, RigVerdict::kGood);
+  EXPECT_TRUE(news_from(61, true));
+  EXPECT_EQ(watch.fit()->verdict, RigVerdict::kRecalibrate);
 }
 
 TEST(RigWatch, StrictEndsTheRun) {
