@@ -51,6 +51,9 @@ struct EngineOptions {
 /// --size WxH, like 640x480; a usage error where it is none.
 CLI::Option* add_size_option(CLI::App& app, Size& size, const char* help);
 
+/// For options that hold a number above 0, finite.
+CLI::Validator above_zero();
+
 /// Writes to stderr. A stderr that is closed or full changes nothing: fmt::print() would throw.
 void put_on_stderr(const std::string& text);
 

@@ -6,11 +6,12 @@
 #include <memory>
 
 #include "command.h"
+#include "duoptic/frame_files.h"
 #include "duoptic/paint.h"
 #include "duoptic/sink.h"
 #include "duoptic/synthetic.h"
 #include "eval_clip.h"
-#include "frame_files.h"
+#include "output.h"
 #include "progress.h"
 #include "timing.h"
 
@@ -68,11 +69,11 @@ Result<void> write_pictures(const SyntheticPair& raw, const Run& run, const std:
   const Image<Rgb8> disparity = draw_disparity(run.frame->disparity.d_q4, &rectified);
   const Image<Rgb8> cloud = draw_cloud(run.frame->disparity.d_q4, run.frame->color, rectified, disparity.size());
   DUO_TRY_ASSIGN(OutputSet out, OutputSet::open(folder));
-  DUO_TRY(write_frame(*run.frame, run.engine->rectified(), out));
+  DUO_TRY(write_frame(*run.frame, run.engine->rectified(), {}, [&](const std::string& name) { return out / name; }));
   DUO_TRY(write_png(raw.pair.left.pixels, out / "left.png"));
   DUO_TRY(write_png(cloud, out / "cloud.png"));
   DUO_TRY(write_png(side_by_side({raw.pair.left.pixels, disparity, cloud}), out / "demo.png"));
-  return out.publish();
+  return out.publish(frame_file_names());
 }
 
 void print(const char* what, const RenderedAccuracy& a) {

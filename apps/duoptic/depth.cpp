@@ -9,11 +9,13 @@
 
 #include "command.h"
 #include "duoptic/calibrate.h"
+#include "duoptic/frame_files.h"
 #include "duoptic/pipeline.h"
-#include "frame_files.h"
 #include "input.h"
 #include "interrupt.h"
+#include "output.h"
 #include "progress.h"
+#include "rig_report.h"
 #include "timing.h"
 
 namespace duo::app::depth {
@@ -23,12 +25,16 @@ namespace fs = std::filesystem;
 
 constexpr char kFooter[] =
     "Writes into DIR: disparity.pfm (float px, +inf where unknown) and disparity.png (colours with a legend); with --rig also\n"
-    "depth.png (16 bits, mm, 0 = unknown) and cloud.ply (coloured points, m). Videos give one folder for each frame:\n"
-    "DIR/frame_000000/disparity.pfm, ... The files of a frame appear together or not at all.\n\n"
+    "depth.png (16 bits, mm, 0 = unknown), left_rectified.png (the picture that depth.png is of), camera.json (its size, K,\n"
+    "baseline and Q) and cloud.ply (coloured points, m). Videos give one folder for each frame, DIR/frame_000000/...; with\n"
+    "--outputs depth-video one file, DIR/depth.mkv (16 bits, FFV1), beside its camera.json. The files of a frame appear\n"
+    "together or not at all, and take the place of all files of an earlier run.\n\n"
     "Examples:\n"
     "  duoptic depth left.png right.png --max-disparity 64 -o out          a rectified pair\n"
     "  duoptic depth left.avi right.avi --rig rig.json --every 10 -o out   raw webcam videos, every tenth frame\n"
     "  duoptic depth left.avi right.avi --rig rig.json --near 0.5 -o out   everything farther than half a metre\n"
+    "  duoptic depth left.png right.png --rig rig.json --outputs cloud --far 5 --axes blender -o out\n"
+    "  duoptic depth left.avi right.avi --rig rig.json --outputs depth-video -o out   depth of all frames in one file\n"
     "  duoptic depth both.png --preset thesis                              both views side by side in one file\n"
     "  duoptic depth left.png right.png --window 200,120,160,160 -o out    only there, the same values, sooner";
 
@@ -37,8 +43,12 @@ struct Options {
   int max_disparity = Setup().max_disparity;
   InputOptions input;
   double near_m = 0;  // 0: max_disparity says how far to search
+  double far_m = kNoFarLimit_m;
+  std::vector<std::string> outputs;  // empty: all that there are, without confidence and depth-video
+  std::string axes = "opencv";
   std::int64_t every = 1;
   std::vector<std::string> windows;
+  RigCheck check = RigCheck::kTell;
   bool confidence = false, keep_rows = false, json = false, quiet = false;
   EngineOptions engine;
 };
@@ -74,6 +84,72 @@ Result<void> look_at(Pipeline& pipeline, const Options& options) {
   return {};
 }
 
+/// What is written of each frame; a video of all of them is not.
+FrameFiles files_of(const Options& options) {
+  FrameFiles files;
+  if (!options.outputs.empty()) {
+    files.outputs.clear();
+    for (const std::string& name : options.outputs) {
+      const auto found = std::find(kFrameOutputNames.begin(), kFrameOutputNames.end(), name);
+      files.outputs.push_back(static_cast<FrameOutput>(found - kFrameOutputNames.begin()));
+    }
+  }
+  if (options.confidence) files.outputs.push_back(FrameOutput::kConfidence);
+  if (const auto axes = axes_of(options.axes)) files.cloud.axes = *axes;
+  files.cloud.far_m = options.far_m;
+  return files;
+}
+
+/// Errors  what was asked for needs a rig, or a video
+Result<void> check_outputs(const FrameFiles& files, const Options& options, const Pipeline& pipeline) {
+  for (const FrameOutput output : files.outputs) {
+    const std::string name(kFrameOutputNames[static_cast<std::size_t>(output)]);
+    const bool any_pair = output == FrameOutput::kDisparity || output == FrameOutput::kConfidence;
+    if (!options.outputs.empty() && !any_pair && !pipeline.rectified())
+      return Error{ErrorCode::kBadInput, fmt::format("cannot write {}: it needs a rig; give one with --rig", name)};
+    if (output == FrameOutput::kDepthVideo && pipeline.still())
+      return Error{ErrorCode::kBadInput, fmt::format("cannot write {} of one picture; take --outputs depth", name)};
+  }
+  return {};
+}
+
+/// The depth of all frames and the camera that it is of: both appear at the end.
+class DepthOfAll {
+ public:
+  Result<void> write(const Pipeline& pipeline, const FrameFiles& files, const fs::path& folder) {
+    const TrackedFrame frame = pipeline.tracked();
+    if (!video_) {
+      auto out = OutputSet::open(folder);
+      if (!out) return out.error();
+      out_.emplace(std::move(*out));
+      DUO_TRY_ASSIGN(video_, DepthVideo::open(*out_ / "depth.mkv", frame.frame->depth_mm.size(), pipeline.header().frame_s));
+    }
+    return video_->write(near_depth(frame.frame->depth_mm, files.cloud.far_m), frame.t_s);
+  }
+  Result<void> finish(const Pipeline& pipeline, FrameFiles files, std::vector<std::string>& written) {
+    if (!video_) return {};
+    DUO_TRY(video_->finish());
+    files.outputs = {FrameOutput::kCamera};
+    DUO_TRY(write_frame(*pipeline.frame(), pipeline.rectified(), files, [&](const std::string& name) { return *out_ / name; }));
+    DUO_TRY(out_->publish());
+    for (std::string& path : out_->paths()) written.push_back(std::move(path));
+    return {};
+  }
+
+ private:
+  std::optional<OutputSet> out_;
+  std::optional<DepthVideo> video_;  // after the folder that it is written into
+};
+
+/// Share of pixels with a disparity, 0 .. 1.
+double coverage(const Frame& frame) {
+  const Image<std::uint8_t>& origin = frame.disparity.origin;
+  std::int64_t known = 0;
+  for (int y = 0; y < origin.height(); ++y)
+    for (int x = 0; x < origin.width(); ++x) known += origin.at(y, x) != static_cast<std::uint8_t>(Origin::kNone);
+  return static_cast<double>(known) / (static_cast<double>(origin.width()) * origin.height());
+}
+
 struct Summary {
   std::vector<double> ms;
   std::vector<std::string> files;
@@ -83,11 +159,17 @@ struct Summary {
 
 Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::App& app) {
   Summary summary;
+  FrameFiles files = files_of(options);
+  files.cloud.metric = pipeline.header().metric;
+  DUO_TRY(check_outputs(files, options, pipeline));
+  const bool in_one = files.has(FrameOutput::kDepthVideo), each = files.outputs.size() > (in_one ? 1 : 0);
+  DepthOfAll depth_of_all;
   Progress progress(app, pipeline.count(), options.quiet);
   std::optional<Interrupt> interrupt;
   if (pipeline.live()) interrupt.emplace();
   while (!Interrupt::asked()) {
     DUO_TRY_ASSIGN(summary.end, pipeline.next());
+    say_rig_news(app, pipeline);
     if (summary.end == Next::kNothing) continue;
     if (summary.end != Next::kNew) break;
     if (const std::string event = pipeline.event(); !event.empty()) say(app, "warning: " + event);
@@ -97,12 +179,17 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
     const std::uint64_t number = pipeline.pair()->sequence;
     const fs::path folder =
         pipeline.still() ? fs::path(options.folder) : fs::path(options.folder) / fmt::format("frame_{:06}", number);
-    DUO_TRY_ASSIGN(OutputSet out, OutputSet::open(folder));
-    DUO_TRY(write_frame(*pipeline.frame(), pipeline.rectified(), out));
-    DUO_TRY(out.publish());
-    for (std::string& path : out.paths()) summary.files.push_back(std::move(path));
+    if (pipeline.rig_fit()) files.disparity_sigma_px = pipeline.rig_fit()->disparity_sigma_px;
+    if (each) {
+      DUO_TRY_ASSIGN(OutputSet out, OutputSet::open(folder));
+      DUO_TRY(write_frame(*pipeline.frame(), pipeline.rectified(), files, [&](const std::string& name) { return out / name; }));
+      DUO_TRY(out.publish(frame_file_names()));
+      for (std::string& path : out.paths()) summary.files.push_back(std::move(path));
+    }
+    if (in_one) DUO_TRY(depth_of_all.write(pipeline, files, options.folder));
     progress.frame(static_cast<std::int64_t>(number) + 1);
   }
+  DUO_TRY(depth_of_all.finish(pipeline, files, summary.files));
   return summary;
 }
 
@@ -121,6 +208,10 @@ void print(const Summary& summary, const Pipeline& pipeline, const Options& opti
   const double frames = static_cast<double>(summary.ms.size()), ms = median(summary.ms);
   const double percent = frames > 0 ? 100 * summary.coverage_sum / frames : 0;
   if (options.json) {
+    const double sigma_px = pipeline.rig_fit() ? pipeline.rig_fit()->disparity_sigma_px : 0;
+    const auto camera = pipeline.rectified()
+                            ? nlohmann::json::parse(camera_json(*pipeline.rectified(), pipeline.header().metric, sigma_px))
+                            : nullptr;
     const nlohmann::json out = {{"frames", summary.ms.size()},
                                 {"pairs_read", pipeline.read()},
                                 {"width", setup.size.width},
@@ -134,6 +225,8 @@ void print(const Summary& summary, const Pipeline& pipeline, const Options& opti
                                 {"median_ms", ms},
                                 {"coverage_percent", percent},
                                 {"rows", json_of(setup.rows)},
+                                {"rig_fit", to_json(pipeline.rig_fit())},
+                                {"camera", camera},
                                 {"cut", summary.end == Next::kCut},
                                 {"warning", pipeline.warning()},
                                 {"files", summary.files}};
@@ -165,7 +258,8 @@ Result<std::optional<RowOffsets>> rows_of(const Options& options, const Setup& s
 }
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
-  PipelineSetup setup{.engine = options.engine.engine, .threads = options.engine.threads, .every = options.every};
+  PipelineSetup setup{
+      .engine = options.engine.engine, .threads = options.engine.threads, .every = options.every, .check = options.check};
   Setup& frames = setup.frames = options.engine.setup();
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(frames.rig, load_rig(options.rig));
@@ -180,7 +274,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
     }
     frames.wants = {.color = true, .depth = true};
   }
-  frames.wants.confidence = options.confidence;
+  frames.wants.confidence = files_of(options).has(FrameOutput::kConfidence);
   DUO_TRY_ASSIGN(frames.rows, rows_of(options, frames, input.pairs->live()));
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
   DUO_TRY(look_at(pipeline, options));
@@ -209,8 +303,20 @@ Command add(CLI::App& app) {
                           ->capture_default_str();
   sub->add_option("--near", options->near_m, "Searches as far as something at this distance needs, by the rig")
       ->type_name("METRES")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->excludes(most);
+  sub->add_option("--far", options->far_m,
+                  "Nothing farther than this in depth.png and cloud.ply; far points are the least sure")
+      ->type_name("METRES")
+      ->check(above_zero());
+  sub->add_option("--outputs", options->outputs,
+                  "What to write, separated by commas; without it all but confidence and depth-video. See docs/formats.md")
+      ->delimiter(',')
+      ->check(CLI::IsMember(std::vector<std::string>(kFrameOutputNames.begin(), kFrameOutputNames.end())))
+      ->type_name("KINDS");
+  sub->add_option("--axes", options->axes, "Coordinate system of cloud.ply, see docs/formats.md")
+      ->check(CLI::IsMember(std::vector<std::string>(kAxesNames.begin(), kAxesNames.end())))
+      ->capture_default_str();
   sub->add_option("-o,--output", options->folder, "Folder for the results")->type_name("DIR")->capture_default_str();
   sub->add_option("--every", options->every, "Of a video, only every N-th frame")
       ->type_name("N")
@@ -226,6 +332,7 @@ Command add(CLI::App& app) {
             return std::string();
           },
           ""));
+  add_strict_option(*sub, options->check);
   options->engine.add_to(*sub);
   sub->add_flag("--confidence", options->confidence,
                 "Write confidence.png, too: 1 doubtful .. 255 sure, 0 = unknown (matcher sgm)");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <thread>
 
@@ -123,6 +124,18 @@ Setup EngineOptions::setup() const {
   for (const auto& [name, value] : kDenoise)
     if (name == denoise) setup.denoise = value;
   return setup;
+}
+
+CLI::Validator above_zero() {
+  return {[](std::string& text) {
+            double value = 0;
+            const char* end = text.data() + text.size();
+            const auto [rest, error] = std::from_chars(text.data(), end, value);
+            return error == std::errc() && rest == end && std::isfinite(value) && value > 0
+                       ? std::string()
+                       : fmt::format("'{}' is not a number above 0, like 0.5", text);
+          },
+          ""};
 }
 
 CLI::Option* add_size_option(CLI::App& app, Size& size, const char* help) {

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -79,11 +80,13 @@ OutputSet::OutputSet(OutputSet&& other) noexcept
       folder_fd_(std::exchange(other.folder_fd_, -1)),
       staging_fd_(std::exchange(other.staging_fd_, -1)),
       made_(std::exchange(other.made_, {})),
-      names_(std::move(other.names_)) {}
+      names_(std::move(other.names_)),
+      stale_(std::move(other.stale_)) {}
 
 /// Asks for no memory: there may be none.
 OutputSet::~OutputSet() {
   for (const std::string& name : names_) ::unlinkat(staging_fd_, name.c_str(), 0);
+  for (const std::string& name : stale_) ::unlinkat(staging_fd_, name.c_str(), 0);
   if (staging_fd_ >= 0) ::close(staging_fd_);
   if (!staging_.empty()) ::unlinkat(folder_fd_, staging_.c_str(), AT_REMOVEDIR);
   if (folder_fd_ >= 0) ::close(folder_fd_);
@@ -121,8 +124,18 @@ void OutputSet::take_back(const std::string& name, bool replaced) const {
     ::unlinkat(folder_fd_, name.c_str(), 0);
 }
 
-Result<void> OutputSet::publish() {
+/// Moves an earlier run's file out of the way, where there is one; 0 or an errno.
+int OutputSet::take_away(const std::string& name, bool& gone) const {
+  struct stat there {};
+  const char* n = name.c_str();
+  gone = ::fstatat(folder_fd_, n, &there, AT_SYMLINK_NOFOLLOW) == 0 && (S_ISREG(there.st_mode) || S_ISLNK(there.st_mode));
+  return !gone || ::renameat(folder_fd_, n, staging_fd_, n) == 0 ? 0 : errno;
+}
+
+Result<void> OutputSet::publish(const std::vector<std::string>& kinds) {
   if (!lock(folder_fd_)) return cannot_write(folder_, "another program has locked the folder; try again");
+  for (const std::string& kind : kinds)
+    if (std::find(names_.begin(), names_.end(), kind) == names_.end()) stale_.push_back(kind);
   std::vector<bool> replaced(names_.size());
   for (std::size_t i = 0; i < names_.size(); ++i) {
     bool earlier = false;
@@ -132,6 +145,15 @@ Result<void> OutputSet::publish() {
     for (std::size_t done = i; done-- > 0;) take_back(names_[done], replaced[done]);
     errno = failed;
     return cannot_write(folder_ / names_[i]);
+  }
+  for (const std::string& name : stale_) {
+    bool gone = false;
+    if (take_away(name, gone) == 0) continue;
+    const int failed = errno;
+    for (const std::string& earlier : stale_) ::renameat(staging_fd_, earlier.c_str(), folder_fd_, earlier.c_str());
+    for (std::size_t done = names_.size(); done-- > 0;) take_back(names_[done], replaced[done]);
+    errno = failed;
+    return cannot_write(folder_ / name);
   }
   ::flock(folder_fd_, LOCK_UN);
   made_.clear();

@@ -29,6 +29,7 @@ struct Options {
   std::string left, right, output, rig;
   InputOptions input;
   double seconds = 0;  // 0: to the end, or until Ctrl-C
+  RigCheck check = RigCheck::kTell;
   bool force = false, json = false, quiet = false;
 };
 
@@ -42,6 +43,7 @@ Result<Next> record_all(Pipeline& pipeline, const Options& options, const CLI::A
   Next next = Next::kNew;
   while (!Interrupt::asked() && pipeline.recording().on && next != Next::kEnd && next != Next::kCut) {
     DUO_TRY_ASSIGN(next, pipeline.next());
+    say_rig_news(app, pipeline);
     progress.frame(pipeline.recording().pairs);
     if (by_clock && clock_ms(CLOCK_MONOTONIC) - start_ms >= options.seconds * 1000 + kGrace_ms) break;
   }
@@ -54,10 +56,11 @@ void print(const Pipeline& pipeline, const Options& options, Next end, bool rig)
   const RecordingStatus done = pipeline.recording();
   const Size size = pipeline.setup().size;
   if (options.json) {
-    const nlohmann::json out = {{"file", options.output},   {"pairs", done.pairs},          {"width", size.width},
-                                {"height", size.height},    {"length_s", done.length_s},    {"bytes", done.bytes},
-                                {"codecs", done.codecs},    {"dropped", done.dropped},      {"rig", rig},
-                                {"cut", end == Next::kCut}, {"warning", pipeline.warning()}};
+    const nlohmann::json out = {
+        {"file", options.output},   {"pairs", done.pairs},           {"width", size.width},
+        {"height", size.height},    {"length_s", done.length_s},     {"bytes", done.bytes},
+        {"codecs", done.codecs},    {"dropped", done.dropped},       {"rig", rig},
+        {"cut", end == Next::kCut}, {"warning", pipeline.warning()}, {"rig_fit", to_json(pipeline.rig_fit())}};
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else if (!options.quiet) {
     fmt::print("{}: {} pair{} of {}x{} in {:.1f} s, {}, {:.1f} MB, {} rig{}\n", options.output, done.pairs,
@@ -82,7 +85,9 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
     return Error{ErrorCode::kBadInput,
                  fmt::format("cannot record {} with this rig: it is of pictures of {}x{}, these have {}x{}", options.left,
                              setup.rig->left.size.width, setup.rig->left.size.height, size.width, size.height)};
-  DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), {.engine = ""}));
+  PipelineSetup of_pairs{.engine = "", .check = options.check};
+  of_pairs.frames.rig = setup.rig;
+  DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(of_pairs)));
   DUO_TRY(pipeline.record(options.output, setup, options.seconds));
   DUO_TRY_ASSIGN(const Next end, record_all(pipeline, options, app));
   if (pipeline.recording().pairs == 0)
@@ -104,7 +109,8 @@ Command add(CLI::App& app) {
   options->input.add_to(*sub);
   sub->add_option("--seconds", options->seconds, "How long; without it to the end, or until Ctrl-C")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
+  add_strict_option(*sub, options->check);
   sub->add_flag("--force", options->force, "Replace a file of that name");
   sub->add_flag("--json", options->json, "Print the summary as JSON");
   sub->add_flag("--quiet", options->quiet, "No progress and no summary");

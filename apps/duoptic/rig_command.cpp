@@ -39,13 +39,16 @@ constexpr char kImportFooter[] =
     "  duoptic rig import SN1234.conf --size 1280x720 -o rig.json";
 constexpr char kExportFooter[] =
     "opencv: FILE.yml, .yaml or .json with M1 D1 M2 D2 R T R1 R2 P1 P2 Q. ros: FILE.yaml holds both cameras' camera_info, any\n"
-    "other name is a folder for left.yaml and right.yaml. kalibr: FILE.yaml, a camchain.\n\n"
+    "other name is a folder for left.yaml and right.yaml. ros-rectified: the same of the rectified pictures, which are what\n"
+    "left_rectified.png and depth.png of duoptic depth are. kalibr: FILE.yaml, a camchain.\n\n"
     "Examples:\n"
     "  duoptic rig export rig.json --to opencv -o stereo.yml\n"
     "  duoptic rig export rig.json --to ros -o camera_info";
 
-const std::map<std::string, RigFormat> kFormats = {
-    {"opencv", RigFormat::kOpencv}, {"ros", RigFormat::kRos}, {"kalibr", RigFormat::kKalibr}};
+const std::map<std::string, RigFormat> kFormats = {{"opencv", RigFormat::kOpencv},
+                                                   {"ros", RigFormat::kRos},
+                                                   {"kalibr", RigFormat::kKalibr},
+                                                   {"ros-rectified", RigFormat::kRosRectified}};
 
 struct Options {
   std::string rig, left, right, output, format = "opencv";
@@ -186,7 +189,7 @@ Subcommands add_subcommands(CLI::App& rig, Options& options) {
   CLI::App* export_to = rig.add_subcommand("export", "Write a rig for another program");
   export_to->add_option("RIG", options.rig, "Rig file")->required();
   export_to->add_option("--to", options.format, "Whose format")->check(CLI::IsMember(kFormats))->required();
-  add_output(*export_to, "File, or folder for ros", true);
+  add_output(*export_to, "File, or folder for ros and ros-rectified", true);
   add_json(*export_to);
   export_to->footer(kExportFooter);
   return {check, refine, import, export_to};

@@ -7,6 +7,8 @@
 #include <ctime>
 #include <numbers>
 
+#include "command.h"
+
 namespace duo::app {
 namespace {
 
@@ -67,6 +69,25 @@ nlohmann::json to_json(const SceneHealth& h) {
           {"turned_sigma_deg", list(kDeg * h.turned_sigma_rad)},
           {"pan_px", h.pan_px},
           {"pan_sigma_px", h.pan_sigma_px}};
+}
+
+nlohmann::json to_json(const std::optional<RigFit>& fit) {
+  if (!fit) return nullptr;
+  return {{"verdict", name_of(fit->verdict)},
+          {"what", fit->what},
+          {"disparity_sigma_px", fit->disparity_sigma_px},
+          {"scene", fit->scene ? to_json(*fit->scene) : nlohmann::json()}};
+}
+
+void add_strict_option(CLI::App& app, RigCheck& check) {
+  check = RigCheck::kTell;
+  app.add_flag_callback(
+      "--strict", [&check] { check = RigCheck::kStrict; },
+      "Stop with exit 4, and not only warn, when the first pairs (live: of any minute) show that the rig does not fit");
+}
+
+void say_rig_news(const CLI::App& app, const Pipeline& pipeline) {
+  if (const std::string news = pipeline.rig_news(); !news.empty()) say(app, "warning: " + news);
 }
 
 std::string date_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }

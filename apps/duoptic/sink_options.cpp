@@ -32,7 +32,9 @@ constexpr SinkKind kSinkKinds[] = {
      }},
     {"--vmc", "HOST:PORT", "Send avatar bones (Virtual Motion Capture protocol) by UDP; nothing is received", "VMC",
      "127.0.0.1:39539",
-     [](const std::string& target, const SinkOptions&, const TrackHeader&, std::string&) -> Made { return make_vmc(target); }},
+     [](const std::string& target, const SinkOptions& options, const TrackHeader&, std::string&) -> Made {
+       return make_vmc(target, options.vmc_bones);
+     }},
 };
 constexpr std::size_t kLines = 0, kVideo = 1;
 
@@ -48,6 +50,9 @@ void SinkOptions::add_to(CLI::App& app) {
     CLI::Option* option = app.add_option(kind.option, targets[i], kind.help)->type_name(kind.type)->allow_extra_args(false);
     if (i == kLines || i == kVideo) option->expected(1);
   }
+  app.add_flag_callback(
+      "--vmc-rotations", [this] { vmc_bones = VmcBones::kRotations; },
+      "Of bones send rotations alone, positions 0: for receivers that would stretch the avatar, see docs/formats.md");
   app.add_option("--axes", axes, "Coordinate system of --csv and --osc, see docs/formats.md")
       ->check(CLI::IsMember(axes_names()))
       ->capture_default_str();

@@ -28,6 +28,7 @@ std::span<const SinkKind> sink_kinds();
 struct SinkOptions {
   std::vector<std::vector<std::string>> targets;  // of each kind
   std::string axes = "opencv";
+  VmcBones vmc_bones = VmcBones::kWhole;
 
   SinkOptions() : targets(sink_kinds().size()) {}
   void add_to(CLI::App& app);

@@ -41,6 +41,7 @@ struct Options {
   std::string arm_side = "right";
   std::int64_t at_frame = 0;
   InputOptions input;
+  RigCheck check = RigCheck::kTell;
   bool force = false, stats = false, quiet = false, realtime = false;
   TrackingOptions tracking;
   SinkOptions sinks;
@@ -80,6 +81,7 @@ Result<Next> next_frame(Pipeline& pipeline, Events& events) {
     DUO_TRY_ASSIGN(const Next next, pipeline.next());
     if (pipeline.live()) events.see(pipeline.warning());
     if (next == Next::kNew) events.happened(pipeline.event());
+    events.happened(pipeline.rig_news());
     if (next != Next::kNothing) return next;
   }
 }
@@ -166,6 +168,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(PipelineSetup setup, tracking.setup(input));
   setup.first = options.at_frame;
   setup.tell_times = options.stats;
+  setup.check = options.check;
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
   if (!options.record.empty()) DUO_TRY(pipeline.record(options.record, to_record));
   std::optional<Interrupt> interrupt;
@@ -218,6 +221,7 @@ Command add(CLI::App& app) {
   sub->add_flag("--force", options->force, "Replace an earlier recording of that name")->needs(record);
   sub->add_flag("--realtime", options->realtime,
                 "Take files at the pace of their capture times, as if live: late pairs are dropped");
+  add_strict_option(*sub, options->check);
   options->tracking.add_to(*sub);
   sub->add_flag("--stats", options->stats, "Add times to each line and print a summary of them on stderr");
   sub->add_flag("--quiet", options->quiet, "No progress and no summary");

@@ -191,7 +191,7 @@ void Panels::draw_clicks(const Fit& fit, const Clicks& clicks) const {
 void Panels::put_joints(const Cell& cell) const {
   if (shown_->people.empty()) return;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const std::vector<Label> labels = labels_of(shown_->people[0]);
+  const std::vector<Label> labels = labels_of(shown_->people[0], header_.metric);
   const float width = cell.caption_width / static_cast<float>(labels.size());
   float x = cell.caption.x;
   for (const Label& label : labels) {
@@ -215,7 +215,7 @@ void Panels::draw_depth(const Cell& cell) {
   std::string text = "no depth";
   if (d != Disparity::kNone && d != 0) {
     const Vec3 p_m = header_.rectified.triangulate({static_cast<double>(x), static_cast<double>(y)}, d / 16.0);
-    text = fmt::format("{:.2f} m   x {:+.2f}  y {:+.2f}", p_m.z, p_m.x, p_m.y);
+    text = fmt::format("{:.2f}{}   x {:+.2f}  y {:+.2f}", p_m.z, header_.metric ? " m" : "", p_m.x, p_m.y);
   }
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddCircle(mouse, 5 * scale_, kText, 0, 1.5f * scale_);
@@ -235,7 +235,7 @@ void Panels::put_depth_legend(const Cell& cell) {
        {1.0, 2.0, 0.5, 5.0, 3.0, 1.5, 10.0, 0.7, 4.0, 2.5, 0.3, 0.4, 0.6, 0.8, 1.2, 7.0, 0.9, 6.0, 3.5, 1.4, 1.8, 20.0}) {
     const double share = (header_.rectified.disparity_px(z_m) - range_.far_px) / (range_.near_px - range_.far_px);
     if (share < 0 || share > 1) continue;
-    const std::string text = fmt::format("{:g} m", z_m);
+    const std::string text = fmt::format("{:g}{}", z_m, header_.metric ? " m" : "");
     const float x = cell.caption.x + static_cast<float>(share) * cell.caption_width,
                 half = ImGui::CalcTextSize(text.c_str()).x / 2;
     const float left = x - half - 6 * scale_, right = x + half + 6 * scale_;

@@ -49,11 +49,12 @@ double now_ms() { return clock_ms(CLOCK_MONOTONIC); }
 }  // namespace
 
 Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options, const CLI::App& app) {
-  std::unique_ptr<Player> player(new Player(options));
+  std::unique_ptr<Player> player(new Player(options, app));
   DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, options.rig, options.input));
   TrackingOptions tracking = options.tracking;
   tracking.all_maps = true;
   DUO_TRY_ASSIGN(PipelineSetup setup, tracking.setup(input));
+  setup.check = options.check;
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
   player->rig_ = *pipeline.setup().rig;
   player->skew_ = SkewWatch(pipeline.header().rectified.baseline_m);
@@ -262,8 +263,10 @@ Result<void> Player::run(const std::stop_token& stop) {
 void Player::advance() {
   const Result<Next> next = pipeline_->next();
   if (!next) return fail(next.error(), true);
+  say_rig_news(app_, *pipeline_);
   {
     const std::lock_guard lock(mutex_);
+    if (const auto& fit = pipeline_->rig_fit()) status_.rig_news = fit->what;
     status_.silent = *next == Next::kNothing;
     status_.dropped = pipeline_->dropped();
     if (live()) status_.event = pipeline_->warning();

@@ -25,6 +25,7 @@ struct PlayerOptions {
   InputOptions input;
   TrackingOptions tracking;
   SinkOptions sinks;
+  RigCheck check = RigCheck::kTell;
   bool loop = false;
   std::function<void()> on_news;  // called in the player's thread when there is something new to show
 };
@@ -56,9 +57,10 @@ struct PlayerStatus {
   bool loop = false;
   bool silent = false;  // live, and no pictures come
   std::int64_t dropped = 0;
-  int refused = 0;      // selections, so far
-  std::string event;    // live: what cameras and their skew do to the result; empty: nothing
-  std::string problem;  // of the last thing tried; empty: none
+  int refused = 0;       // selections, so far
+  std::string rig_news;  // what the pairs say is wrong with the rig; empty: nothing
+  std::string event;     // live: what cameras and their skew do to the result; empty: nothing
+  std::string problem;   // of the last thing tried; empty: none
   std::vector<OutputStatus> outputs;
   bool checking_rig = false;  // scene_health() is at it
   std::optional<Result<SceneHealth>> health;
@@ -108,7 +110,7 @@ class Player {
   const std::string& warning() const { return warning_; }
 
  private:
-  explicit Player(PlayerOptions options) : options_(std::move(options)) {}
+  Player(PlayerOptions options, const CLI::App& app) : options_(std::move(options)), app_(app) {}
   void post(std::function<void()> wish) { wishes_.put(wish); }
   Result<void> run(const std::stop_token& stop);
   std::optional<double> due_in_ms() const;
@@ -121,6 +123,7 @@ class Player {
   bool resting() const;
 
   PlayerOptions options_;
+  const CLI::App& app_;
   Rig rig_;
   bool still_ = false;
   std::int64_t count_ = 0;

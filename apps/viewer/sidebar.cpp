@@ -58,6 +58,7 @@ Result<Sidebar> Sidebar::make(const PlayerOptions& options, const Player& player
     out.values_.push_back(static_cast<int>(given != overrides.end() ? given->second : info.value));
   }
   out.doubts_ = rig_doubts(player.rig());
+  out.metric_ = player.rig().metric;
   return out;
 }
 
@@ -203,9 +204,10 @@ void Sidebar::put_outputs(Player& player, const PlayerStatus& status) {
 
 void Sidebar::put_joints(const Shown* shown) const {
   if (shown == nullptr || shown->people.empty()) return;
-  title("Joints, metres");
+  title(metric_ ? "Joints, metres" : "Joints, not metric");
   if (!ImGui::BeginTable("joints", 6)) return;
-  const std::pair<const char*, float> columns[] = {{"", 1.35f}, {"", 1.3f}, {"x", 1}, {"y", 1}, {"z", 1}, {"\u00b1 cm", 0.9f}};
+  const std::pair<const char*, float> columns[] = {{"", 1.35f}, {"", 1.3f}, {"x", 1},
+                                                   {"y", 1},    {"z", 1},   {metric_ ? "\u00b1 cm" : "\u00b1", 0.9f}};
   for (const auto& [name, share] : columns) ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, share);
   ImGui::TableHeadersRow();
   for (const Person& person : shown->people)
@@ -307,10 +309,11 @@ void Sidebar::put_source(Player& player, const PlayerStatus& status) const {
   fact("pictures", fmt::format("{}x{}, {:.0f} a second, {}", header.size.width, header.size.height, 1 / header.frame_s,
                                player.live() ? "live" : "from files"));
   fact("focal lengths", fmt::format("{:.1f} and {:.1f} px", rig.left.fx_px, rig.right.fx_px));
-  fact("baseline", fmt::format("{:.1f} mm{}", 1000 * rig.baseline_m(), rig.metric ? "" : ", a guess"));
+  fact("baseline", rig.metric ? fmt::format("{:.1f} mm", 1000 * rig.baseline_m()) : "a guess: not metric");
   fact("engine", header.engine);
   fact("window", device_);
   for (const RigDoubt& doubt : doubts_) colored(color_of_verdict(doubt.verdict), doubt.what);
+  if (!status.rig_news.empty()) colored(kBad, status.rig_news);
   if (status.checking_rig)
     ImGui::TextDisabled("looking at the pictures ...");
   else if (ImGui::Button("Does the rig fit this scene?", {-1, 0}))

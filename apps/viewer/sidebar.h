@@ -38,6 +38,7 @@ class Sidebar {
   std::vector<ParameterInfo> parameters_;
   std::vector<int> values_;
   std::vector<RigDoubt> doubts_;
+  bool metric_ = true;
   static constexpr std::size_t kTarget = 64;
   std::vector<std::array<char, kTarget>> targets_;  // host:port as its user types it, of each of sink_kinds()
   struct Speed {

@@ -11,6 +11,7 @@
 #include "interrupt.h"
 #include "panels.h"
 #include "player.h"
+#include "rig_report.h"
 #include "sidebar.h"
 #include "window.h"
 
@@ -222,6 +223,7 @@ Command add(CLI::App& app) {
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
       ->needs(shot)
       ->capture_default_str();
+  add_strict_option(*sub, options->player.check);
   options->player.tracking.add_to(*sub);
   sub->footer(kFooter);
   return {sub, [options, sub] { return run(*options, *sub); }};

@@ -108,7 +108,7 @@ struct Label {
   JointState state = JointState::kLost;
 };
 /// The ends of limbs come first.
-std::vector<Label> labels_of(const Person& person);
+std::vector<Label> labels_of(const Person& person, bool metric = true);
 
 /// The joints that captions explain the shades of: each part of the body once, of whichever side.
 std::vector<JointId> shaded_joints(const TrackHeader& header);

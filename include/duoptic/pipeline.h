@@ -13,11 +13,19 @@
 
 #include "duoptic/engine.h"
 #include "duoptic/recording.h"
+#include "duoptic/rig_fit.h"
 #include "duoptic/sink.h"
 #include "duoptic/source.h"
 #include "duoptic/tracker.h"
 
 namespace duo {
+
+/// What is done with what rig_fit() finds in the first second, and of a live source every minute.
+enum class RigCheck : std::uint8_t {
+  kNone,    // it is not looked at
+  kTell,    // Pipeline::rig_fit() has it; joints are as much less sure
+  kStrict,  // and next() ends with an error where the verdict is not good
+};
 
 struct PipelineSetup {
   std::vector<std::string> names = {};  // of the source's parts, left first, for the sinks
@@ -29,6 +37,7 @@ struct PipelineSetup {
   std::int64_t first = 0;    // pairs before this number are passed over
   std::int64_t every = 1;    // and of those from there on, all but every N-th
   bool tell_times = false;   // to the sinks: times differ from run to run
+  RigCheck check = RigCheck::kNone;
 };
 
 /// Of the recording that runs, or ran last.
@@ -61,7 +70,7 @@ class Pipeline {
   /// The next frame, tracked. As PairSource::next(): kNothing of a live source means to ask again. Not to be called again after
   /// the end or an error.
   ///
-  /// Errors  those of PairSource::next(); the system gives no thread; no memory
+  /// Errors  those of PairSource::next(); the system gives no thread; no memory; RigCheck::kStrict: the rig does not fit
   Result<Next> next();
   /// Waits until the next frame is ready; then nothing goes on until next(), unless many are made at once.
   void wait();
@@ -74,6 +83,11 @@ class Pipeline {
   TrackedFrame tracked() const;
   TrackTimes times() const;   // of the engine, from when it had the pair; of the tracker
   std::string event() const;  // Engine::take_event()
+  /// What the pairs so far say of the rig; none: not yet judged. Of files it comes with the same frame in every run, of a
+  /// picture with its frame, and of a short file with its end.
+  const std::optional<RigFit>& rig_fit() const;
+  /// RigFit::what, where next() brought another verdict; else empty.
+  std::string rig_news() const;
   /// Tracks from clicks on this frame; see Tracker::select().
   Result<void> select(std::span<const Selection> selections);
   /// Forgets who was selected.

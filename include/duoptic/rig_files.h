@@ -11,9 +11,10 @@
 namespace duo {
 
 enum class RigFormat : std::uint8_t {
-  kOpencv,  // M1 D1 M2 D2 R T R1 R2 P1 P2 Q, YAML or JSON
-  kRos,     // a camera_info YAML of each camera
-  kKalibr,  // camchain.yaml, pinhole-radtan
+  kOpencv,        // M1 D1 M2 D2 R T R1 R2 P1 P2 Q, YAML or JSON
+  kRos,           // a camera_info YAML of each camera
+  kKalibr,        // camchain.yaml, pinhole-radtan
+  kRosRectified,  // camera_info of the rectified pictures, which disparity, depth and left_rectified.png are
 };
 
 struct RigImport {
@@ -35,7 +36,7 @@ struct RigExport {
 };
 
 /// Writes a rig for another program. kOpencv: .yml, .yaml or .json says which. kRos: a .yml or .yaml holds both cameras, one
-/// document each; any other path is a folder that gets left.yaml and right.yaml, as ROS wants them.
+/// document each; any other path is a folder that gets left.yaml and right.yaml, as ROS wants them. kRosRectified: the same.
 ///
 /// Errors  not a format for this ending; a rig that is not metric; those of check_rig() and of writing
 Result<RigExport> export_rig(const Rig& rig, RigFormat format, const std::filesystem::path& path);

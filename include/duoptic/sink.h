@@ -18,6 +18,8 @@
 
 namespace duo {
 
+inline constexpr double kNoFarLimit_m = 1e9;
+
 /// Disparity as a PFM of float px, +infinity where there is none (Middlebury's convention).
 Result<void> write_pfm(View<const std::uint16_t> d_q4, const std::filesystem::path& path);
 /// Reads a one-channel PFM, either byte order; rows top to bottom.
@@ -29,10 +31,15 @@ Result<void> write_png(View<const Rgb8> picture, const std::filesystem::path& pa
 Result<void> write_png(View<const std::uint8_t> picture, const std::filesystem::path& path);
 Result<void> write_png(View<const std::uint16_t> picture, const std::filesystem::path& path);
 
-/// Coloured points of all pixels with a depth, in metres in the rig frame: binary little-endian PLY, x y z float, red green
-/// blue uchar.
+struct CloudOptions {
+  Axes axes = Axes::kOpencv;
+  double far_m = kNoFarLimit_m;  // points that lie farther along z of the rig frame are left out
+  bool metric = true;            // as Rig::metric: whether the file may say metres
+};
+
+/// Coloured points of all pixels with a depth, in metres: binary little-endian PLY, x y z float, red green blue uchar.
 Result<void> write_ply(View<const std::uint16_t> d_q4, View<const Rgb8> color, const Rectified& rectified,
-                       const std::filesystem::path& path);
+                       const std::filesystem::path& path, const CloudOptions& options = {});
 
 /// What sinks are told before the first frame.
 struct TrackHeader {
@@ -42,7 +49,8 @@ struct TrackHeader {
   Rectified rectified;
   Size size;  // of the raw left picture
   double frame_s = 1.0 / 30;
-  bool live = false;  // from cameras: what differs from run to run is told, too
+  bool live = false;   // from cameras: what differs from run to run is told, too
+  bool metric = true;  // as Rig::metric
 };
 
 struct TrackTimes {
@@ -105,7 +113,11 @@ Result<std::unique_ptr<Sink>> make_osc(const std::string& target, Axes axes);
 
 /// The same with the Virtual Motion Capture protocol: bones of a humanoid avatar as rotations from its T-pose. Of two persons
 /// with the same skeleton the first is sent.
-Result<std::unique_ptr<Sink>> make_vmc(const std::string& target);
+enum class VmcBones : std::uint8_t {
+  kWhole,     // each bone lies as far from its parent as in the first pose that was known
+  kRotations  // positions are 0: for receivers that keep the avatar's own bones
+};
+Result<std::unique_ptr<Sink>> make_vmc(const std::string& target, VmcBones bones = VmcBones::kWhole);
 
 /// `sink` behind a thread and a queue, for live sources: write() returns at once. The queue has room for
 /// two seconds of poses, or for four frames with their pictures; when it is full the oldest frame in it goes, and dropped()

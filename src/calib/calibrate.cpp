@@ -12,6 +12,7 @@
 #include "calib/doubt_calibration.h"
 #include "calib/find_board.h"
 #include "calib/judge_bundle.h"
+#include "calib/recognise_board.h"
 #include "calib/start_bundle.h"
 #include "duoptic/statistics.h"
 
@@ -23,7 +24,7 @@ constexpr double kMinTilt_rad = 10 * std::numbers::pi / 180;
 constexpr double kMaxSpread = 0.12, kMaxSpread_px = 3;  // of a blurred edge: share of a square, and px
 constexpr double kRefusedRms_px = 1, kRefusedRow_px = 0.75;
 constexpr double kPoorView_px = 0.3, kPoorView = 2.5;  // rms of a view's corners; and of the median view's
-constexpr std::size_t kKeptPictures = 3;
+constexpr std::size_t kKeptPairs = 3;
 
 Error refused(const std::string& why) { return {ErrorCode::kBadInput, "cannot calibrate: " + why}; }
 
@@ -136,11 +137,10 @@ struct Calibrator::State {
   int pairs = 0;
   std::vector<BoardView> views;
   bool any_found = false;
-  std::vector<cv::Mat> look_alikes, without_board;  // the first pictures that may show another board, and of all others
+  std::vector<std::pair<cv::Mat, cv::Mat>> first_pairs;  // until a board was found
 
   BoardView look(const Pair& pair, const std::string& name);
   Result<std::vector<const BoardView*>> usable() const;
-  std::optional<Error> another_board() const;
   Error no_board() const;
   Error disagreeing(const std::vector<const BoardView*>& views) const;
   Result<Bundle> fit(std::vector<const BoardView*>& views, std::vector<std::string>& rejected) const;
@@ -153,9 +153,6 @@ BoardView Calibrator::State::look(const Pair& pair, const std::string& name) {
   for (const bool left : {true, false}) {
     const cv::Mat gray = gray_of(left ? pair.left : pair.right);
     FoundBoard found = find_board(gray, board);
-    if (std::vector<cv::Mat>& kept = found.looks_like_one ? look_alikes : without_board;
-        found.corners.empty() && kept.size() < kKeptPictures)
-      kept.push_back(gray);
     any_found = any_found || !found.corners.empty();
     if (!found.corners.empty()) {
       const double spread_px = edge_spread_px(gray, board, found);
@@ -174,27 +171,14 @@ BoardView Calibrator::State::look(const Pair& pair, const std::string& name) {
   return view;
 }
 
-std::optional<Error> Calibrator::State::another_board() const {
-  for (const auto* pictures : {&look_alikes, &without_board})
-    for (const cv::Mat& gray : *pictures) {
-      const std::string seen = name_any_chessboard(gray);
-      if (!seen.empty() && seen != fmt::format("{}x{}", std::max(board.inner_columns(), board.inner_rows()),
-                                               std::min(board.inner_columns(), board.inner_rows())))
-        return refused(fmt::format("a {} was looked for, but the pictures show {} inner corners; give --board chessboard:{}",
-                                   corner_words(board), seen, seen));
-    }
-  return {};
-}
-
 Error Calibrator::State::no_board() const {
   if (board.kind == Board::Kind::kCharuco)
-    for (const cv::Mat& gray : without_board) {
+    for (const auto& [left, right] : first_pairs) {
       cv::Mat flipped;
-      cv::flip(gray, flipped, 1);
+      cv::flip(left, flipped, 1);
       if (!find_board(flipped, board).corners.empty())
         return refused("the pictures are mirrored; switch off the mirror of the camera program");
     }
-  if (const auto error = another_board()) return *error;
   return refused(fmt::format(
       "no {} found in any of {} pairs; it must be whole in both pictures, lit evenly and sharp (and named by --board)",
       corner_words(board), pairs));
@@ -295,11 +279,14 @@ Result<const BoardView*> Calibrator::add(const Pair& pair, const std::string& na
                                  picture == &pair.left ? "left" : "right", name, size.width, size.height, state_->size.width,
                                  state_->size.height));
   ++state_->pairs;
-  const bool first_look_alikes = state_->look_alikes.size() < kKeptPictures;
+  // Another board is told with the first pair that shows it: the search for what is not there takes seconds a picture.
+  if (!state_->any_found && state_->first_pairs.size() < kKeptPairs) {
+    const auto& [left, right] = state_->first_pairs.emplace_back(gray_of(pair.left), gray_of(pair.right));
+    if (const auto seen = recognise_board(left, right, state_->board))
+      return refused(fmt::format("a {} was looked for, but {} shows a {}; give --board {}", corner_words(state_->board), name,
+                                 corner_words(*seen), seen->name()));
+  }
   state_->views.push_back(state_->look(pair, name));
-  // The search for what is not there takes seconds a picture: no need to go through all of them.
-  if (first_look_alikes && state_->look_alikes.size() == kKeptPictures && !state_->any_found)
-    if (const auto error = state_->another_board()) return *error;
   return &state_->views.back();
 }
 

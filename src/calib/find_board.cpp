@@ -1,7 +1,5 @@
 #include "calib/find_board.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
@@ -32,10 +30,8 @@ FoundBoard find_chessboard(const cv::Mat& gray, const Board& board) {
   // Pictures without a board are told by the fast check; only those that pass it and still fail are searched the long way.
   if (!cv::findChessboardCorners(gray, size, corners, kFlags | cv::CALIB_CB_FAST_CHECK)) {
     if (!cv::checkChessboard(gray, size)) return found;
-    if (!cv::findChessboardCorners(gray, size, corners, kFlags) && !cv::findChessboardCornersSB(gray, size, corners)) {
-      found.looks_like_one = true;
+    if (!cv::findChessboardCorners(gray, size, corners, kFlags) && !cv::findChessboardCornersSB(gray, size, corners))
       return found;
-    }
   }
   for (std::size_t i = 0; i < corners.size(); ++i) found.corners.push_back({static_cast<int>(i), corners[i].x, corners[i].y});
   return found;
@@ -140,17 +136,6 @@ double edge_spread_px(const cv::Mat& gray, const Board& board, const FoundBoard&
     widest_px = std::max(widest_px, median(spreads));
   }
   return widest_px;
-}
-
-std::string name_any_chessboard(const cv::Mat& gray) {
-  try {
-    std::vector<cv::Point2f> corners;
-    cv::Mat seen;
-    if (!cv::findChessboardCornersSB(gray, {3, 3}, corners, cv::CALIB_CB_LARGER, seen) || seen.empty()) return "";
-    return fmt::format("{}x{}", std::max(seen.cols, seen.rows), std::min(seen.cols, seen.rows));
-  } catch (const cv::Exception&) {
-    return "";
-  }
 }
 
 }  // namespace duo

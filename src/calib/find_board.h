@@ -2,7 +2,6 @@
 #pragma once
 
 #include <opencv2/core.hpp>
-#include <string>
 #include <vector>
 
 #include "duoptic/calibrate.h"
@@ -12,8 +11,7 @@ namespace duo {
 /// A board in one picture, corners in order of their ids; none = not found.
 struct FoundBoard {
   std::vector<BoardCorner> corners;
-  double spacing_px = 0;        // mean distance of neighbours
-  bool looks_like_one = false;  // a chessboard, but not the one that was looked for
+  double spacing_px = 0;  // mean distance of neighbours
 };
 
 /// All corners of a chessboard, or those of a ChArUco board whose markers are seen.
@@ -27,6 +25,10 @@ struct Marker {
   std::array<cv::Point2f, 4> corners;
 };
 std::vector<Marker> find_markers(const cv::Mat& gray, const Board& board);
+/// Those of the first `count` of a dictionary, wherever they lie: some may be read where there is none.
+std::vector<Marker> read_markers(const cv::Mat& gray, int bits, int count);
+/// Those of them that lie where the board has them.
+std::vector<Marker> markers_of_board(const std::vector<Marker>& markers, const Board& board);
 
 /// Where the marker with this id lies on its board: its top-left corner, with the first inner corner of the board at (0, 0).
 ///
@@ -46,8 +48,5 @@ void refine_corners(const cv::Mat& gray, const Board& board, FoundBoard& found);
 /// How wide the edges of the squares are spread: distance from a quarter to three quarters of the step, median over edges
 /// along rows or along columns, whichever is wider.
 double edge_spread_px(const cv::Mat& gray, const Board& board, const FoundBoard& found);
-
-/// Inner corners, columns x rows, of whatever chessboard is seen; "" = none.
-std::string name_any_chessboard(const cv::Mat& gray);
 
 }  // namespace duo

@@ -75,40 +75,13 @@ std::uint64_t turned(std::uint64_t marker, int bits) {  // a quarter clockwise
 }
 
 /// The marker that the bits show and how many quarters it is turned clockwise; id -1 when none is near enough.
-std::pair<int, int> identify(std::uint64_t read, const Board& board) {
-  const int count = board.columns * board.rows / 2, bits = board.marker_bits;
+std::pair<int, int> identify(std::uint64_t read, int bits, int count) {
   for (int id = 0; id < count; ++id) {
     std::uint64_t marker = marker_bits_of(bits, id);
     for (int quarter = 0; quarter < 4; ++quarter, marker = turned(marker, bits))
       if (std::popcount(marker ^ read) <= forgiven(bits)) return {id, quarter};
   }
   return {-1, 0};
-}
-
-/// Those that lie where the board has them; a chance reading elsewhere does not.
-std::vector<Marker> consistent(const std::vector<Marker>& markers, const Board& board, double side_px) {
-  if (markers.size() < 2) return {};
-  std::vector<cv::Point2f> on_board, in_picture, expected;
-  for (const Marker& marker : markers) {
-    const cv::Point2d place = marker_place(board, marker.id);
-    const double s = board.marker_share;
-    for (const cv::Point2d offset : {cv::Point2d(0, 0), cv::Point2d(s, 0), cv::Point2d(s, s), cv::Point2d(0, s)})
-      on_board.emplace_back(place + offset);
-    in_picture.insert(in_picture.end(), marker.corners.begin(), marker.corners.end());
-  }
-  const double reach_px = 0.2 * side_px;
-  // RANSAC's own verdict is that of its best four corners, which may be four of one marker and miss the far ones; that of the
-  // map refitted to all it took is the one that counts.
-  const cv::Mat map = cv::findHomography(on_board, in_picture, cv::RANSAC, reach_px);
-  if (map.empty()) return {};
-  cv::perspectiveTransform(on_board, expected, map);
-  std::vector<Marker> kept;
-  for (std::size_t i = 0; i < markers.size(); ++i) {
-    double off_px = 0;
-    for (std::size_t k = 4 * i; k < 4 * i + 4; ++k) off_px = std::max(off_px, cv::norm(expected[k] - in_picture[k]));
-    if (off_px <= reach_px) kept.push_back(markers[i]);
-  }
-  return kept;
 }
 
 }  // namespace
@@ -127,19 +100,48 @@ cv::Point2d marker_place(const Board& board, int id) {
   return {};
 }
 
-std::vector<Marker> find_markers(const cv::Mat& gray, const Board& board) {
+std::vector<Marker> read_markers(const cv::Mat& gray, int bits, int count) {
   std::vector<Marker> found;
-  double sides_px = 0;
   for (Quad quad : find_quads(gray)) {
-    const std::int64_t read = read_bits(gray, quad, board.marker_bits);
+    const std::int64_t read = read_bits(gray, quad, bits);
     if (read < 0) continue;
-    const auto [id, quarter] = identify(static_cast<std::uint64_t>(read), board);
+    const auto [id, quarter] = identify(static_cast<std::uint64_t>(read), bits, count);
     if (id < 0 || std::any_of(found.begin(), found.end(), [id = id](const Marker& m) { return m.id == id; })) continue;
     std::rotate(quad.begin(), quad.begin() + quarter, quad.end());
     found.push_back({id, quad});
-    sides_px += cv::norm(quad[1] - quad[0]);
   }
-  return consistent(found, board, found.empty() ? 1 : sides_px / static_cast<double>(found.size()));
+  return found;
+}
+
+std::vector<Marker> markers_of_board(const std::vector<Marker>& markers, const Board& board) {
+  if (markers.size() < 2) return {};
+  double sides_px = 0;
+  for (const Marker& marker : markers) sides_px += cv::norm(marker.corners[1] - marker.corners[0]);
+  std::vector<cv::Point2f> on_board, in_picture, expected;
+  for (const Marker& marker : markers) {
+    const cv::Point2d place = marker_place(board, marker.id);
+    const double s = board.marker_share;
+    for (const cv::Point2d offset : {cv::Point2d(0, 0), cv::Point2d(s, 0), cv::Point2d(s, s), cv::Point2d(0, s)})
+      on_board.emplace_back(place + offset);
+    in_picture.insert(in_picture.end(), marker.corners.begin(), marker.corners.end());
+  }
+  const double reach_px = 0.2 * sides_px / static_cast<double>(markers.size());
+  // RANSAC's own verdict is that of its best four corners, which may be four of one marker and miss the far ones; that of the
+  // map refitted to all it took is the one that counts.
+  const cv::Mat map = cv::findHomography(on_board, in_picture, cv::RANSAC, reach_px);
+  if (map.empty()) return {};
+  cv::perspectiveTransform(on_board, expected, map);
+  std::vector<Marker> kept;
+  for (std::size_t i = 0; i < markers.size(); ++i) {
+    double off_px = 0;
+    for (std::size_t k = 4 * i; k < 4 * i + 4; ++k) off_px = std::max(off_px, cv::norm(expected[k] - in_picture[k]));
+    if (off_px <= reach_px) kept.push_back(markers[i]);
+  }
+  return kept;
+}
+
+std::vector<Marker> find_markers(const cv::Mat& gray, const Board& board) {
+  return markers_of_board(read_markers(gray, board.marker_bits, board.columns * board.rows / 2), board);
 }
 
 }  // namespace duo

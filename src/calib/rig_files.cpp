@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <system_error>
@@ -10,6 +11,7 @@
 
 #include "calib/normal_equations.h"
 #include "calib/opencv_rectified.h"
+#include "calib/rectification.h"
 #include "calib/rig_formats.h"
 #include "calib/yaml_reader.h"
 #include "core/file.h"
@@ -24,11 +26,9 @@ bool is_yaml(const fs::path& path) { return path.extension() == ".yml" || path.e
 
 // --- ROS ------------------------------------------------------------------------------------------------------------------
 
-Result<RigExport> write_ros(const Rig& rig, const fs::path& path) {
-  const OpencvRectified rectified = opencv_rectified(rig);
-  const auto name = [](const std::string& known, const char* side) { return known.empty() ? side : known; };
-  const std::string left = ros_from_camera(rig.left, name(rig.left_name, "left"), rectified.r1, rectified.p1),
-                    right = ros_from_camera(rig.right, name(rig.right_name, "right"), rectified.r2, rectified.p2);
+std::string name_or(const std::string& known, const char* side) { return known.empty() ? side : known; }
+
+Result<RigExport> write_camera_infos(const std::string& left, const std::string& right, const fs::path& path) {
   if (is_yaml(path)) {
     DUO_TRY(write_file(path, left + "---\n" + right));
     return RigExport{{path}};
@@ -39,6 +39,23 @@ Result<RigExport> write_ros(const Rig& rig, const fs::path& path) {
   DUO_TRY(write_file(path / "left.yaml", left));
   DUO_TRY(write_file(path / "right.yaml", right));
   return RigExport{{path / "left.yaml", path / "right.yaml"}};
+}
+
+Result<RigExport> write_ros(const Rig& rig, const fs::path& path) {
+  const OpencvRectified rectified = opencv_rectified(rig);
+  return write_camera_infos(ros_from_camera(rig.left, name_or(rig.left_name, "left"), rectified.r1, rectified.p1),
+                            ros_from_camera(rig.right, name_or(rig.right_name, "right"), rectified.r2, rectified.p2), path);
+}
+
+/// Of the pictures that depth is of: nothing is left to undo, and the right one looks from a baseline to the right.
+Result<RigExport> write_ros_rectified(const Rig& rig, const fs::path& path) {
+  DUO_TRY_ASSIGN(const Rectified r, rectified_geometry(rig, path.string()));
+  const Camera camera = {.size = r.size, .fx_px = r.focal_px, .fy_px = r.focal_px, .cx_px = r.cx_px, .cy_px = r.cy_px};
+  const auto projection = [&](double x_m) {
+    return std::array{r.focal_px, 0.0, r.cx_px, -r.focal_px * x_m, 0.0, r.focal_px, r.cy_px, 0.0, 0.0, 0.0, 1.0, 0.0};
+  };
+  return write_camera_infos(ros_from_camera(camera, name_or(rig.left_name, "left"), Mat3{}, projection(0)),
+                            ros_from_camera(camera, name_or(rig.right_name, "right"), Mat3{}, projection(r.baseline_m)), path);
 }
 
 // --- Kalibr ---------------------------------------------------------------------------------------------------------------
@@ -120,6 +137,8 @@ Result<RigExport> export_rig(const Rig& rig, RigFormat format, const fs::path& p
         return RigExport{{path}};
       case RigFormat::kRos:
         return write_ros(rig, path);
+      case RigFormat::kRosRectified:
+        return write_ros_rectified(rig, path);
       case RigFormat::kKalibr:
         if (!is_yaml(path)) return wrong_ending(path, "Kalibr's files end with .yaml or .yml");
         return write_kalibr(rig, path);

@@ -8,6 +8,7 @@
 #include <opencv2/core/persistence.hpp>
 
 #include "calib/opencv_rectified.h"
+#include "calib/rectification.h"
 #include "core/lens.h"
 #include "duoptic/synthetic.h"
 #include "tests/refused_rig.h"
@@ -107,6 +108,28 @@ TEST(RigFiles, OpencvReadsWhatWeWriteForIt) {
     EXPECT_NEAR(matrix("P2", 3, 4).at<double>(0, 3), -focal_px * rig.baseline_m(), 1e-9);
     EXPECT_NEAR(matrix("Q", 4, 4).at<double>(2, 3), focal_px, 1e-9);
   }
+}
+
+// The rectified pictures have no lens left, and the right camera lies a baseline to the right.
+TEST(RigFiles, RosGetsTheRectifiedPictures) {
+  const TempFolder folder;
+  const Rig rig = rational();
+  ASSERT_TRUE(export_rig(rig, RigFormat::kRosRectified, folder / "rectified"));
+  const auto back = import_rig(folder / "rectified");
+  ASSERT_TRUE(back) << back.error().what;
+  const auto geometry = rectified_geometry(rig, "rig");
+  ASSERT_TRUE(geometry);
+  for (const Camera& camera : {back->rig.left, back->rig.right}) {
+    EXPECT_EQ(camera.size, geometry->size);
+    EXPECT_NEAR(camera.fx_px, geometry->focal_px, 1e-9);
+    EXPECT_NEAR(camera.fy_px, geometry->focal_px, 1e-9);
+    EXPECT_NEAR(camera.cx_px, geometry->cx_px, 1e-9);
+    EXPECT_NEAR(camera.cy_px, geometry->cy_px, 1e-9);
+    EXPECT_EQ(camera.distortion, (std::array<double, 8>{}));
+  }
+  EXPECT_EQ(back->rig.right_from_left.rotation, Mat3{});
+  EXPECT_NEAR(back->rig.right_from_left.t_m.x, -rig.baseline_m(), 1e-12);
+  EXPECT_NEAR(norm(back->rig.right_from_left.t_m), rig.baseline_m(), 1e-12);
 }
 
 // A lens with k3 or a denominator has no exact radtan: what Kalibr sees stays within the error that is told.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <opencv2/imgproc.hpp>
+#include <span>
 
 #include "calib/align_match.h"
 #include "core/pool.h"
@@ -39,7 +41,8 @@ class Matcher {
         right_(kPoints),
         found_(kPoints) {}
 
-  void add(const Pair& pair, std::vector<Candidate>& out) {
+  /// How many points the poorer picture has.
+  int add(const Pair& pair, std::vector<Candidate>& out) {
     sift(pair.left, left_, smooth_left_);
     sift(pair.right, right_, smooth_right_);
     found_.resize(static_cast<std::size_t>(left_.count));
@@ -52,6 +55,7 @@ class Matcher {
       if (const auto there = align_match(smooth_left_, at, smooth_right_, {b.x_px, b.y_px}, kRadius_px))
         out.push_back({{at, *there}, found.square_distance});
     }
+    return std::min(left_.count, right_.count);
   }
 
  private:
@@ -84,6 +88,11 @@ std::vector<SceneMatch> best_of_each_cell(std::vector<Candidate> all, Size size)
   return out;
 }
 
+void note(int points, SceneMatches& scene) {
+  scene.fewest_points = scene.pairs == 0 ? points : std::min(scene.fewest_points, points);
+  ++scene.pairs;
+}
+
 }  // namespace
 
 int cell_of(Vec2 at_px, Size size, int columns, int rows) {
@@ -110,19 +119,26 @@ Result<SceneMatches> match_scene(PairSource& pairs, int threads, std::int64_t fa
     scene.cut = next == Next::kCut;
     if (next != Next::kNew) break;
     if (i % step != 0) continue;
-    matcher.add(pair, all);
-    ++scene.pairs;
+    note(matcher.add(pair, all), scene);
   }
   scene.matches = best_of_each_cell(std::move(all), scene.size);
   return scene;
 }
 
-SceneMatches match_pair(const Pair& pair, int threads) {
-  SceneMatches scene{pair.left.pixels.size(), 1, false, {}};
+SceneMatches match_pairs(std::span<const std::shared_ptr<const Pair>> pairs, int threads) {
+  SceneMatches scene;
+  if (pairs.empty()) return scene;
+  scene.size = pairs[0]->left.pixels.size();
   std::vector<Candidate> all;
-  Matcher(scene.size, threads).add(pair, all);
+  Matcher matcher(scene.size, threads);
+  for (const auto& pair : pairs) note(matcher.add(*pair, all), scene);
   scene.matches = best_of_each_cell(std::move(all), scene.size);
   return scene;
+}
+
+SceneMatches match_pair(const Pair& pair, int threads) {
+  const std::shared_ptr<const Pair> one(std::shared_ptr<void>(), &pair);
+  return match_pairs({&one, 1}, threads);
 }
 
 double covered_share(const std::vector<SceneMatch>& matches, Size size) {

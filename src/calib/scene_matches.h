@@ -1,6 +1,8 @@
 // Points of a scene that both cameras see: what a rig can be judged and put right by without a board.
 #pragma once
 
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,7 @@ struct SceneMatches {
   int pairs = 0;     // that were looked at
   bool cut = false;  // the stream was cut short; its whole pairs were used
   std::vector<SceneMatch> matches;
+  int fewest_points = 0;  // that a picture has, matched or not
 };
 
 inline constexpr std::int64_t kTwoMinutes = 3600;  // pairs of a usual camera
@@ -30,7 +33,8 @@ inline constexpr std::int64_t kTwoMinutes = 3600;  // pairs of a usual camera
 /// Errors      those of the stream
 Result<SceneMatches> match_scene(PairSource& pairs, int threads, std::int64_t farthest = kTwoMinutes);
 
-/// The same of one pair.
+/// The same of pairs of one size, or of one.
+SceneMatches match_pairs(std::span<const std::shared_ptr<const Pair>> pairs, int threads);
 SceneMatches match_pair(const Pair& pair, int threads);
 
 /// The cell of a picture parted into columns and rows that a place lies in, row by row.

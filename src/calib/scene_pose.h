@@ -42,9 +42,9 @@ struct ScenePose {
 Result<std::vector<SceneMatch>> agreeing_matches(const Rig& lenses, const SceneMatches& scene);
 
 /// The rig nearest to `start` that fits the matches: Gauss-Newton on Sampson's distance with Tukey's weights. The baseline
-/// keeps its length. All `pairs` may show one still scene with the same points: they count once in the uncertainty and against
-/// the freedom. Where lenses are free, what is not known of their shape makes errors alike in whole parts of the picture: then
-/// all matches weigh as fifty.
+/// keeps its length. All `pairs` may show one still scene with the same points: they count once against the freedom. The
+/// uncertainty is that of the matches' noise, and of what a calibration leaves of the lenses. Where lenses are free, what is
+/// not known of their shape makes errors alike in whole parts of the picture: then all matches weigh as fifty.
 ///
 /// Errors  the numbers run away
 /// Source  Hartley, Zisserman, "Multiple View Geometry", 2004, section 11.4.3 (distance); Tukey's biweight at 95 % efficiency

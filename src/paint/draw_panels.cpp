@@ -119,11 +119,11 @@ void stroke(const Shapes& shapes, View<Rgb8> dst, const TrackHeader& header, con
 }
 
 /// "hand 1.32 m +-2 cm" for each joint; a line per person.
-void put_labels(View<Rgb8> dst, std::span<const Person> people, const Layout& layout) {
+void put_labels(View<Rgb8> dst, std::span<const Person> people, bool metric, const Layout& layout) {
   static const cv::Scalar kColors[] = {kBox, {250, 190, 60}, kFaint};
   constexpr std::size_t kMostLines = 2;
   for (std::size_t n = 0; n < people.size() && n < kMostLines; ++n) {
-    const std::vector<Label> labels = labels_of(people[n]);
+    const std::vector<Label> labels = labels_of(people[n], metric);
     for (std::size_t i = 0; i < labels.size(); ++i) {
       const std::string sigma = labels[i].sigma.empty() ? "" : " +-" + labels[i].sigma;
       const int x =
@@ -168,13 +168,13 @@ Image<Rgb8> draw_panels(const TrackedFrame& frame, const TrackHeader& header, co
   fit(frame.left->pixels.clone(), camera.picture);
   stroke(shapes_of(frame.people, header), camera.picture, header, layout);
   put_title(camera, layout, "left camera: joints and bones", fmt::format("frame {}   {:.2f} s", frame.number, frame.t_s));
-  put_labels(camera.caption, frame.people, layout);
+  put_labels(camera.caption, frame.people, header.metric, layout);
 
   Image<Rgb8> drawn(frame.frame->color.size());
   color_disparity(frame.frame->disparity.d_q4, range, drawn);
   fit(drawn, depth.picture);
   put_title(depth, layout, "depth", "metres");
-  draw_legend(depth.caption, range, &header.rectified);
+  draw_legend(depth.caption, range, header.metric ? &header.rectified : nullptr);
 
   draw_regions(*frame.frame, header.rectified, frame.people, drawn);
   fit(drawn, region.picture);

@@ -37,7 +37,7 @@ Shapes shapes_of(std::span<const Person> people, const TrackHeader& header) {
   return out;
 }
 
-std::vector<Label> labels_of(const Person& person) {
+std::vector<Label> labels_of(const Person& person, bool metric) {
   constexpr std::size_t kMost = 4;
   std::vector<Label> out;
   if (person.count() > kMost) {
@@ -52,8 +52,8 @@ std::vector<Label> labels_of(const Person& person) {
     if (joint.state == JointState::kLost)
       out.push_back({fmt::format("{} lost", part), "", joint.state});
     else
-      out.push_back({fmt::format("{} {:.2f} m", part, joint.p_in_rig_m.z),
-                     fmt::format("{:.0f} cm", std::ceil(100 * joint.sigma_m())), joint.state});
+      out.push_back({fmt::format("{} {:.2f}{}", part, joint.p_in_rig_m.z, metric ? " m" : ""),
+                     metric ? fmt::format("{:.0f} cm", std::ceil(100 * joint.sigma_m())) : "", joint.state});
   }
   return out;
 }

@@ -8,6 +8,7 @@
 #include "core/check.h"
 #include "core/clock.h"
 #include "pipeline/frame_stream.h"
+#include "pipeline/rig_watch.h"
 #include "pipeline/tap.h"
 
 namespace duo {
@@ -32,6 +33,8 @@ struct Pipeline::State {
   std::shared_ptr<const Pair> pair;  // last.pair
   std::vector<Person> people;
   double tracker_ms = 0;
+  RigWatch watch;
+  bool rig_news = false;
   std::int64_t passed = 0;  // frames of sources before this one
   double passed_s = 0;
 
@@ -40,7 +43,8 @@ struct Pipeline::State {
   Result<void> prepare();
   Result<void> prepare_tracker();
   Result<void> start();
-  void keep(std::span<const Person> found) { people.assign(found.begin(), found.end()); }
+  Result<void> look_at_rig(Next next);
+  void keep(std::span<const Person> found);
 };
 
 namespace {
@@ -66,6 +70,8 @@ Result<void> Pipeline::State::prepare() {
   header.size = of_engine.size;
   header.frame_s = waiting->frame_s();
   header.live = live;
+  header.metric = !of_engine.rig || of_engine.rig->metric;
+  if (setup.check != RigCheck::kNone) watch = RigWatch(of_engine.rig, live);
   if (setup.engine.empty()) return {};
 
   if (tracker != nullptr || !setup.tracker.empty()) {
@@ -109,6 +115,21 @@ Result<void> Pipeline::State::start() {
   return {};
 }
 
+Result<void> Pipeline::State::look_at_rig(Next next) {
+  rig_news = false;
+  if (next == Next::kNothing) return {};
+  rig_news = next == Next::kNew ? watch.see(pair, source().still()) : watch.end();
+  rig_news = rig_news && !watch.fit()->what.empty();
+  if (setup.check == RigCheck::kStrict && rig_news) return Error{ErrorCode::kBadInput, watch.fit()->what};
+  return {};
+}
+
+void Pipeline::State::keep(std::span<const Person> found) {
+  people.assign(found.begin(), found.end());
+  if (const auto& fit = watch.fit(); fit && fit->disparity_sigma_px > 0)
+    widen(people, header.rectified, fit->disparity_sigma_px);
+}
+
 Pipeline::Pipeline(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
@@ -127,8 +148,9 @@ Result<Next> Pipeline::next() {
   State& s = *state_;
   DUO_TRY(s.start());
   DUO_TRY_ASSIGN(const Next next, s.frames->next(s.last));
+  if (next == Next::kNew) s.pair = s.last.pair;
+  DUO_TRY(s.look_at_rig(next));
   if (next != Next::kNew) return next;
-  s.pair = s.last.pair;
   if (s.tracker == nullptr) return next;
   const std::int64_t begin_ns = wall_ns();
   s.keep(s.tracker->track(*s.last.frame));
@@ -144,6 +166,8 @@ std::span<const Person> Pipeline::people() const { return state_->people; }
 const Tracker* Pipeline::tracker() const { return state_->tracker.get(); }
 TrackTimes Pipeline::times() const { return {state_->last.engine_ms, state_->tracker_ms}; }
 std::string Pipeline::event() const { return state_->last.event; }
+const std::optional<RigFit>& Pipeline::rig_fit() const { return state_->watch.fit(); }
+std::string Pipeline::rig_news() const { return state_->rig_news ? rig_fit()->what : std::string(); }
 
 TrackedFrame Pipeline::tracked() const {
   const Pair& pair = *state_->pair;

@@ -12,6 +12,7 @@ const Mat3& axes_from_rig(Axes axes) {
       Mat3::from_rows(kForward, kLeft, kUp),  // ros
       Mat3::from_rows(kX, kUp, kBack),        // opengl
       Mat3::from_rows(kX, kUp, kForward),     // unity
+      Mat3::from_rows(kX, kForward, kUp),     // blender
   };
   return kTable[static_cast<std::size_t>(axes)];
 }

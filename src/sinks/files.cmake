@@ -9,6 +9,8 @@ target_sources(duoptic PRIVATE
   ${dir}/clip/avi.cpp
   ${dir}/coded_view.cpp
   ${dir}/csv.cpp
+  ${dir}/depth_video.cpp
+  ${dir}/frame_files.cpp
   ${dir}/in_background.cpp
   ${dir}/json_lines.cpp
   ${dir}/osc.cpp
@@ -21,6 +23,7 @@ target_sources(duoptic PRIVATE
   ${dir}/video_writer.cpp
   ${dir}/vmc.cpp)
 duoptic_test(sinks/files ${dir}/files_test.cpp)
+duoptic_test(sinks/frame_files ${dir}/frame_files_test.cpp)
 duoptic_test(sinks/tracked_frames ${dir}/tracked_frames_test.cpp)
 duoptic_test(sinks/other_programs ${dir}/motion_files_test.cpp ${dir}/osc_test.cpp)
 duoptic_test(sinks/recorder ${dir}/recorder_test.cpp ${dir}/recorder_names_test.cpp)

@@ -48,14 +48,14 @@ std::string header_line(const TrackHeader& r) {
   for (const std::string& source : r.sources) sources.push_back(quoted(source));
   for (const Skeleton* skeleton : r.skeletons) skeletons.push_back(skeleton_text(*skeleton));
   return fmt::format(
-      R"({{"type":"header","version":{},"units":{{"length":"m","time":"s","uv":"px of the raw left picture"}},)"
+      R"({{"type":"header","version":{},"units":{{"length":"{}","time":"s","uv":"px of the raw left picture"}},)"
       R"("rig_from_left":[{}],"focal_px":{},"baseline_m":{},"sources":[{}],"engine":{},"device":{},"matcher":{},"matcher_preset":{},)"
       R"("tracker":{},"skeletons":{{{}}},"width":{},"height":{},"frame_s":{}}})"
       "\n",
-      kVersion, fmt::join(rotation, ","), number(r.rectified.focal_px, 4), number(r.rectified.baseline_m, 6),
-      fmt::join(sources, ","), quoted(r.engine), r.device.empty() ? "null" : quoted(r.device), quoted(r.matcher),
-      quoted(r.matcher_preset), quoted(r.tracker), fmt::join(skeletons, ","), r.size.width, r.size.height,
-      number(r.frame_s, 6));
+      kVersion, r.metric ? "m" : "unknown", fmt::join(rotation, ","), number(r.rectified.focal_px, 4),
+      number(r.rectified.baseline_m, 6), fmt::join(sources, ","), quoted(r.engine),
+      r.device.empty() ? "null" : quoted(r.device), quoted(r.matcher), quoted(r.matcher_preset), quoted(r.tracker),
+      fmt::join(skeletons, ","), r.size.width, r.size.height, number(r.frame_s, 6));
 }
 
 std::string text_of(const Joint& joint) {

@@ -165,6 +165,38 @@ TEST(Vmc, ElbowBendsAroundItsHinge) {
   EXPECT_EQ(got[0].numbers[0], 0);
 }
 
+/// A tracked arm is a little longer or shorter in each frame: the avatar's stays as it was first.
+TEST(Vmc, BonesKeepTheirLengths) {
+  Receiver receiver;
+  auto sink = make_vmc(receiver.target());
+  ASSERT_TRUE(sink);
+  Instant instant;
+  for (const double longer : {1.0, 1.2, 0.9}) {
+    instant.people = {arm_of({0, 0, 2}, {-0.3 * longer, 0, 2}, {-0.55 * longer, 0.02, 2})};
+    ASSERT_TRUE((*sink)->write(instant.tracked(0)));
+    const auto got = receiver.next();
+    ASSERT_EQ(got.size(), 6u);
+    EXPECT_NEAR(std::abs(got[4].numbers[0]), 0.3, 1e-6);
+    EXPECT_NEAR(std::abs(got[5].numbers[0]), std::hypot(0.25, 0.02), 1e-6);
+  }
+}
+
+TEST(Vmc, RotationsAlone) {
+  Receiver receiver, other;
+  auto whole = make_vmc(receiver.target()), rotations = make_vmc(other.target(), VmcBones::kRotations);
+  ASSERT_TRUE(whole && rotations);
+  Instant instant;
+  instant.people = {arm_of({0, 0, 2}, {-0.3, 0, 2}, {-0.3, 0, 1.75})};
+  ASSERT_TRUE((*whole)->write(instant.tracked(0)) && (*rotations)->write(instant.tracked(0)));
+  const auto a = receiver.next(), b = other.next();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 3; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].words, b[i].words);
+    for (std::size_t n = 0; n < 3; ++n) EXPECT_EQ(b[i].numbers[n], 0);
+    for (std::size_t n = 3; n < 7; ++n) EXPECT_EQ(a[i].numbers[n], b[i].numbers[n]);
+  }
+}
+
 /// By hand: a body in its T-pose has no turns; its hands' centres are no bones, and of two bodies the first is sent.
 TEST(Vmc, ABodyByWalkingItsTable) {
   Receiver receiver;

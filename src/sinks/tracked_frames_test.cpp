@@ -65,6 +65,15 @@ TEST(JsonLines, SeveralPersonsAndNone) {
                 R"({"type":"frame","frame":1,"t_s":0.033333,"people":[]})" + "\n");
 }
 
+TEST(JsonLines, NothingIsCalledMetresWhereNothingIsMetric) {
+  const test::TempFolder folder;
+  TrackHeader header = clip_header({64, 48});
+  header.metric = false;
+  auto sink = make_json_lines(folder / "arm.jsonl", header);
+  ASSERT_TRUE(sink && (*sink)->finish());
+  EXPECT_NE(bytes_of(folder / "arm.jsonl").find(R"("units":{"length":"unknown",)"), std::string::npos);
+}
+
 TEST(JsonLines, AbandonedLeavesNothing) {
   const test::TempFolder folder;
   const Moment moment({64, 48});

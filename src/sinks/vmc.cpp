@@ -5,6 +5,7 @@
 #include <map>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "body/bone_turns.h"
 #include "duoptic/sink.h"
@@ -26,9 +27,21 @@ constexpr std::array<std::string_view, kJointIds> kHumanoidBones = {
 
 std::string_view bone_of(const JointDef& joint) { return kHumanoidBones[static_cast<std::size_t>(joint.id)]; }
 
+/// The bones of one person keep the lengths of the first pose that is known: an avatar whose bones change is torn.
+struct Avatar {
+  Avatar(const Skeleton& skeleton, const std::vector<Vec3>& places) : turner(skeleton, BodyAxes::kLeftHanded) {
+    for (std::size_t j = 0; j < places.size(); ++j) {
+      const int parent = skeleton.joints[j].parent;
+      length_m.push_back(parent < 0 ? 0 : norm(places[j] - places[static_cast<std::size_t>(parent)]));
+    }
+  }
+  BoneTurner turner;
+  std::vector<double> length_m;  // from the parent's joint; 0: it has none
+};
+
 class Vmc final : public Sink {
  public:
-  explicit Vmc(OscTarget target) : target_(std::move(target)) {}
+  Vmc(OscTarget target, VmcBones bones) : target_(std::move(target)), bones_(bones) {}
 
   Result<void> write(const TrackedFrame& frame) override {
     const OscBundle bundle = new_bundle();
@@ -66,8 +79,8 @@ class Vmc final : public Sink {
   bool add_person(const OscBundle& bundle, const Person& person) {
     const auto places = known_places(person, kAvatarFromRig);
     if (!places) return false;
-    auto& turner = turners_.try_emplace({person.id, person.skeleton}, *person.skeleton, BodyAxes::kLeftHanded).first->second;
-    const auto turns = turner.turn(*places);
+    Avatar& avatar = avatars_.try_emplace({person.id, person.skeleton}, *person.skeleton, *places).first->second;
+    const auto turns = avatar.turner.turn(*places);
     if (!turns) return true;
     for (std::size_t j = 0; j < places->size(); ++j) {
       const JointDef& joint = person.skeleton->joints[j];
@@ -76,7 +89,7 @@ class Vmc final : public Sink {
       if (joint.parent >= 0) {
         const auto parent = static_cast<std::size_t>(joint.parent);
         if (bone_of(joint) == bone_of(person.skeleton->joints[parent])) continue;
-        p_m = norm((*places)[j] - (*places)[parent]) * rest_direction(joint.id, BodyAxes::kLeftHanded);
+        if (bones_ == VmcBones::kWhole) p_m = avatar.length_m[j] * rest_direction(joint.id, BodyAxes::kLeftHanded);
       }
       add_transform(bundle, "/VMC/Ext/Bone/Pos", bone_of(joint).data(), p_m, (*turns)[j]);
     }
@@ -84,14 +97,15 @@ class Vmc final : public Sink {
   }
 
   OscTarget target_;
-  std::map<std::pair<std::uint32_t, const Skeleton*>, BoneTurner> turners_;  // by the person's id; it may be selected anew
+  VmcBones bones_;
+  std::map<std::pair<std::uint32_t, const Skeleton*>, Avatar> avatars_;  // by the person's id; it may be selected anew
 };
 
 }  // namespace
 
-Result<std::unique_ptr<Sink>> make_vmc(const std::string& target) {
+Result<std::unique_ptr<Sink>> make_vmc(const std::string& target, VmcBones bones) {
   DUO_TRY_ASSIGN(OscTarget opened, OscTarget::open(target));
-  return std::unique_ptr<Sink>(std::make_unique<Vmc>(std::move(opened)));
+  return std::unique_ptr<Sink>(std::make_unique<Vmc>(std::move(opened), bones));
 }
 
 }  // namespace duo

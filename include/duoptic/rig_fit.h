@@ -1,0 +1,28 @@
+// Whether the pairs of a run fit their rig, and each other.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "duoptic/frame.h"
+#include "duoptic/rig.h"
+#include "duoptic/rig_health.h"
+
+namespace duo {
+
+struct RigFit {
+  RigVerdict verdict = RigVerdict::kGood;  // also where nothing can be told
+  std::string what = {};                   // one line: what is wrong, by how much, and what to do; empty: nothing
+  std::optional<SceneHealth> scene = {};   // none: there is no rig, or the pairs show too little
+  double disparity_sigma_px = 0;           // by how much disparities may be off all over the picture because of it
+};
+
+/// Judges by the numbers of the rig, where they are of no use, and by the pairs as scene_health() does. Without a rig, and
+/// where the two views do not agree, it looks for what is known to go wrong: left and right swapped, both mirrored, one picture
+/// twice, one camera on its head, on its side or mirrored, pictures that have nothing in common. What the pairs do not tell for
+/// sure is good. The time of one pair is some 60 ms at 640x480.
+RigFit rig_fit(const std::optional<Rig>& rig, std::span<const std::shared_ptr<const Pair>> pairs, int threads);
+
+}  // namespace duo

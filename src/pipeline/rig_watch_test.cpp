@@ -1,0 +1,151 @@
+// When the rig is judged, what is done about it, and that two runs do the same.
+#include "pipeline/rig_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "duoptic/pipeline.h"
+#include "duoptic/synthetic.h"
+
+namespace duo {
+namespace {
+
+const SyntheticPair& watched_room() {
+  static const SyntheticPair room = render_synthetic({.size = {480, 360}}, 2);
+  return room;
+}
+/// Of before the right camera rolled by a degree.
+Rig rolled_rig() {
+  const double c = std::cos(M_PI / 180), s = std::sin(M_PI / 180);
+  Rig rig = watched_room().rig;
+  rig.right_from_left = Rigid3{Mat3{{c, -s, 0, s, c, 0, 0, 0, 1}}, {}} * rig.right_from_left;
+  return rig;
+}
+
+/// The room again and again, ten pairs a second.
+class TenASecond final : public PairSource {
+ public:
+  TenASecond(int count, const Rig& rig, bool swapped = false) : count_(count), rig_(rig), swapped_(swapped) {}
+  Size size() const override { return watched_room().pair.left.pixels.size(); }
+  std::int64_t count() const override { return count_; }
+  bool still() const override { return count_ == 1; }
+  std::optional<Rig> rig() const override { return rig_; }
+  std::string warning() const override { return {}; }
+  Result<Next> next(Pair& into) override {
+    if (given_ == count_) return Next::kEnd;
+    const Pair& pair = watched_room().pair;
+    into.left.pixels = (swapped_ ? pair.right : pair.left).pixels.clone();
+    into.right.pixels = (swapped_ ? pair.left : pair.right).pixels.clone();
+    into.left.t_ns = into.right.t_ns = given_ * TimeNs{100'000'000};
+    into.sequence = static_cast<std::uint64_t>(given_++);
+    return Next::kNew;
+  }
+
+ private:
+  const int count_;
+  const Rig rig_;
+  const bool swapped_;
+  int given_ = 0;
+};
+
+Pipeline watching(std::unique_ptr<PairSource> pairs, RigCheck check) {
+  auto pipeline = Pipeline::open(std::move(pairs), {.engine = "", .check = check});
+  EXPECT_TRUE(pipeline);
+  return std::move(*pipeline);
+}
+
+/// The number of the call to next() that brought news, from 0; -1: none did.
+int news_at(Pipeline& pipeline) {
+  int at = -1;
+  for (int i = 0;; ++i) {
+    const auto next = pipeline.next();
+    EXPECT_TRUE(next) << next.error().what;
+    if (!pipeline.rig_news().empty()) {
+      EXPECT_EQ(at, -1) << "twice";
+      EXPECT_EQ(pipeline.rig_news(), pipeline.rig_fit()->what);
+      at = i;
+    }
+    if (!next || *next != Next::kNew) return at;
+  }
+}
+
+TEST(RigWatch, OfFilesItIsToldWithTheSamePairInEveryRun) {
+  for (int run = 0; run < 2; ++run) {
+    Pipeline longer = watching(std::make_unique<TenASecond>(15, rolled_rig()), RigCheck::kTell);
+    EXPECT_EQ(news_at(longer), 9);  // 0.9 s after the first
+    EXPECT_EQ(longer.rig_fit()->verdict, RigVerdict::kRecalibrate);
+    EXPECT_GT(longer.rig_fit()->disparity_sigma_px, 0.5);
+  }
+  Pipeline shorter = watching(std::make_unique<TenASecond>(4, rolled_rig()), RigCheck::kTell);
+  EXPECT_EQ(news_at(shorter), 4);  // its end
+  Pipeline still = watching(std::make_unique<TenASecond>(1, rolled_rig()), RigCheck::kTell);
+  EXPECT_EQ(news_at(still), 0);
+}
+
+TEST(RigWatch, TheRightRigIsNoNews) {
+  Pipeline good = watching(std::make_unique<TenASecond>(12, watched_room().rig), RigCheck::kStrict);
+  EXPECT_EQ(news_at(good), -1);
+  ASSERT_TRUE(good.rig_fit());
+  EXPECT_EQ(good.rig_fit()->verdict, RigVerdict::kGood);
+  Pipeline untold = watching(std::make_unique<TenASecond>(12, rolled_rig()), RigCheck::kNone);
+  EXPECT_EQ(news_at(untold), -1);
+  EXPECT_FALSE(untold.rig_fit());
+}
+
+TEST(RigWatch, LiveItIsLookedAtAgainEveryMinute) {
+  RigWatch watch(watched_room().rig, true);
+  const auto pair_at = [](double t_s, bool swapped) {
+    auto pair = std::make_shared<Pair>();
+    const Pair& room = watched_room().pair;
+    pair->left.pixels = (swapped ? room.right : room.left).pixels.clone();
+    pair->right.pixels = (swapped ? room.left : room.right).pixels.clone();
+    pair->left.t_ns = static_cast<TimeNs>(t_s * 1e9);
+    return pair;
+  };
+  /// A second from `t_s` on, then as long as it takes, but no minute of the source's time.
+  const auto news_from = [&](double t_s, bool swapped) {
+    for (int i = 0; i < 2000; ++i) {
+      if (watch.see(pair_at(t_s + 0.1 * std::min(i, 10), swapped), false)) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  };
+  EXPECT_TRUE(news_from(0, false));
+  EXPECT_EQ(watch.fit()->verdict, RigVerdict::kGood);
+  EXPECT_TRUE(news_from(61, true));
+  EXPECT_EQ(watch.fit()->verdict, RigVerdict::kRecalibrate);
+}
+
+TEST(RigWatch, StrictEndsTheRun) {
+  Pipeline swapped = watching(std::make_unique<TenASecond>(1, watched_room().rig, true), RigCheck::kStrict);
+  const auto next = swapped.next();
+  ASSERT_FALSE(next);
+  EXPECT_EQ(next.error().code, ErrorCode::kBadInput);
+  EXPECT_NE(next.error().what.find("swapped"), std::string::npos) << next.error().what;
+}
+
+/// By hand: at 2 m with a focal length of 500 px and 0.1 m between the cameras a pixel is 2 * 2 / 50 = 0.08 m along z, and half
+/// of that along x where x is half of z.
+TEST(RigWatch, JointsAreAsMuchLessSure) {
+  Person person;
+  person.skeleton = &kRightArm;
+  Joint& joint = person.joints[0];
+  joint.state = JointState::kSeen;
+  joint.p_in_rig_m = {1, 0, 2};
+  joint.cov_m2 = Covariance3::isotropic(0.01);
+  Rectified rectified;
+  rectified.focal_px = 500;
+  rectified.baseline_m = 0.1;
+  widen({&person, 1}, rectified, 1);
+  EXPECT_NEAR(joint.cov_m2.zz, 0.0001 / 3 + 0.08 * 0.08, 1e-12);
+  EXPECT_NEAR(joint.cov_m2.xx, 0.0001 / 3 + 0.04 * 0.04, 1e-12);
+  EXPECT_NEAR(joint.cov_m2.xz, 0.04 * 0.08, 1e-12);
+  EXPECT_NEAR(joint.cov_m2.yy, 0.0001 / 3, 1e-12);
+}
+
+}  // namespace
+}  // namespace duo
