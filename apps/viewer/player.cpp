@@ -51,7 +51,7 @@ double now_ms() { return clock_ms(CLOCK_MONOTONIC); }
 Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options, const CLI::App& app) {
   std::unique_ptr<Player> player(new Player(options));
   DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, options.rig));
-  TrackingOptions tracking = options.tracking;
+  TrackingOptions tracking = options.tracking.or_tracker("body");
   tracking.all_maps = true;
   DUO_TRY_ASSIGN(PipelineSetup setup, tracking.setup(input));
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
