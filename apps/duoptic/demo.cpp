@@ -93,7 +93,7 @@ Result<void> track_person(const Options& options, const CLI::App& app) {
   }
   DUO_TRY_ASSIGN(const ClipTruth truth, load_clip(clip));
   std::vector<ClipScore> scores;
-  for (const char* tracker : {"arm", "thesis"}) {
+  for (const char* tracker : {"body", "arm", "thesis"}) {
     TrackingOptions tracking;
     tracking.engine = options.engine;
     tracking.tracker = tracker;
@@ -108,9 +108,14 @@ Result<void> track_person(const Options& options, const CLI::App& app) {
     DUO_TRY_ASSIGN(ClipScore score, score_clip(clip, truth, {.pipeline = std::move(pipeline), .add_sinks = add_video}));
     scores.push_back(std::move(score));
   }
-  fmt::print("\nThe arm against its exact joints, mm; the thesis's tracker of 2010 beside ours\n");
+  fmt::print(
+      "\nThe whole person without a click against exact joints, mm; beside it the trackers of a clicked arm, ours and the "
+      "thesis's of "
+      "2010\n");
   eval_clip::print(scores);
-  fmt::print("\nLook at {0}/arm.mp4 (joints and bones, depth, body, hue), and how {0}/thesis.mp4 loses it.\n", options.folder);
+  fmt::print(
+      "\nLook at {0}/body.mp4 (joints and bones, depth, regions, hue) and {0}/arm.mp4, and how {0}/thesis.mp4 loses the arm.\n",
+      options.folder);
   return {};
 }
 

@@ -11,9 +11,9 @@ namespace duo::app::eval_clip {
 namespace {
 
 constexpr char kFooter[] =
-    "A clip is a folder with left.avi, right.avi, calibration_truth.yml and truth.json, perhaps depth/. The clicks are the "
-    "truth\n"
-    "at the first frame that shows all clicked joints to both cameras; scores are of the frames from there on.\n"
+    "A clip is a folder with left.avi, right.avi, calibration_truth.yml and truth.json, perhaps depth/. People are found by\n"
+    "themselves; trackers of arms (--tracker arm) get clicks: the truth at the first frame that shows all clicked joints to\n"
+    "both cameras; scores are of the frames from there on.\n"
     "median, p95: error in mm where the joint is visible; bad: of these frames, lost or off by more than 100 mm; recover: the\n"
     "most frames from coming out after 5 or more hidden ones to being tracked again (> at the end still not); hidden, h.lost:\n"
     "median error and share lost while hidden; 3 sigma: share of seen and inferred positions inside what the tracker "
@@ -119,7 +119,7 @@ Result<Exit> run(const Options& options) {
     if (!options.rig.empty()) {
       DUO_TRY_ASSIGN(rig, load_rig(options.rig));
     }
-    TrackingOptions tracking = options.tracking;
+    TrackingOptions tracking = options.tracking.or_tracker("body");
     std::vector<std::string> trackers = {tracking.tracker};
     if (options.compare) trackers = tracker_names();
     for (const std::string& tracker : trackers) {

@@ -16,9 +16,10 @@ namespace duo::app::track {
 namespace {
 
 constexpr char kFooter[] =
-    "Clicks are pixels of the raw left picture at --at-frame; tracking starts there. Both arms: name the joints of both "
-    "sides,\n"
-    "right_hand=.. and left_hand=... Prints JSON lines: a header, then a line per frame with each joint's place in metres "
+    "Without --select people are found by themselves, each with 21 joints. With it an arm is followed: clicks are pixels of "
+    "the\n"
+    "raw left picture at --at-frame; tracking starts there. Both arms: name the joints of both sides, right_hand=.. and\n"
+    "left_hand=... Prints JSON lines: a header, then a line per frame with each joint's place in metres "
     "(rig\n"
     "frame: x right, y down, z forward), its place in the raw left picture, its state (seen, inferred = hidden but known "
     "within\n"
@@ -26,6 +27,8 @@ constexpr char kFooter[] =
     "Cameras run until Ctrl-C, which ends the files; a frame that comes too late is dropped (skew_ms: the right picture's\n"
     "time after the left's).\n\n"
     "Examples:\n"
+    "  duoptic track left.avi right.avi --rig rig.json -o people.jsonl --video people.mp4              whole people, no "
+    "clicks\n"
     "  duoptic track left.avi right.avi --rig rig.json --select hand=451,360 --select elbow=478,285 --select shoulder=446,201\n"
     "  duoptic track left.avi right.avi --rig rig.json --at-frame 40 --select left_hand=.. --select left_elbow=.. \\\n"
     "      --select left_shoulder=.. --select right_hand=.. --select right_elbow=.. --select right_shoulder=.. -o arms.jsonl\n"
@@ -147,8 +150,13 @@ std::string text_of(const Summary& summary, double seconds, const Pipeline& pipe
 }
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
-  DUO_TRY_ASSIGN(const auto tracker, make_tracker(options.tracking.tracker));
+  TrackingOptions tracking = options.tracking.or_tracker(options.select.empty() ? "body" : "arm");
+  DUO_TRY_ASSIGN(const auto tracker, make_tracker(tracking.tracker));
   if (options.select.empty() && !tracker->starts_by_itself()) throw CLI::RequiredError("--select");
+  if (!options.select.empty() && tracker->starts_by_itself())
+    throw CLI::ValidationError(
+        "--select", fmt::format("the tracker {} finds people by itself; leave out --select, or --tracker {}", tracker->name(),
+                                tracker->name()));
   const auto selections = parse_selections(options.select, options.arm_side, tracker->skeletons());
   if (!selections) throw CLI::ValidationError("--select", selections.error().what);
   std::optional<Rig> rig;
@@ -162,7 +170,6 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
                                 .rig = input.rig,
                                 .date = input.pairs->live() ? date_now() : "",
                                 .replace = options.force};
-  TrackingOptions tracking = options.tracking;
   tracking.all_maps = options.sinks.wants_video();
   tracking.in_bulk = true;
   DUO_TRY_ASSIGN(PipelineSetup setup, tracking.setup(input));
@@ -192,8 +199,8 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 }  // namespace
 
 Command add(CLI::App& app) {
-  CLI::App* sub =
-      app.add_subcommand("track", "An arm in 3D through two videos or live, from a click on hand, elbow and shoulder");
+  CLI::App* sub = app.add_subcommand(
+      "track", "People in 3D through two videos or live; or an arm, from a click on hand, elbow and shoulder");
   const auto options = std::make_shared<Options>();
   sub->add_option("LEFT", options->left,
                   "Video of the left camera, or the camera itself (camera:0, /dev/video0, http://, rtsp://, gst:);\nalone: a "
@@ -203,7 +210,7 @@ Command add(CLI::App& app) {
   sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); a recording may bring its own");
   sub->add_option(
          "--select", options->select,
-         "Where a joint is: hand, elbow and shoulder, once for each; of both arms with their sides, left_hand and so on")
+         "Follow an arm instead: where hand, elbow and shoulder are, once for each; of both arms with their sides, left_hand")
       ->type_name("JOINT=X,Y");
   sub->add_option("--arm", options->arm_side, "The arm that is meant where --select says no side: the person's own")
       ->check(CLI::IsMember({"left", "right"}))

@@ -16,9 +16,20 @@ void TrackingOptions::add_to(CLI::App& app) {
                      kNearest_m, kMostDisparities))
       ->type_name("N")
       ->check(CLI::Range(1, Engine::kMaxDisparity));
-  app.add_option("--tracker", tracker, "arm: hand, elbow and shoulder, also while they are hidden; thesis: the method of 2010")
-      ->check(CLI::IsMember(tracker_names()))
+  app.add_option(
+         "--tracker", tracker,
+         "body: whole people, without clicks; arm: hand, elbow and shoulder that are clicked, also while they are hidden;\n"
+         "thesis: the method of 2010")
+      ->check(CLI::IsMember(tracker_names()));
+  app.add_option("--model", model, "The network of bodies of the tracker body: lite, full or heavy (see duoptic detect)")
+      ->check(CLI::IsMember({"lite", "full", "heavy"}))
       ->capture_default_str();
+}
+
+TrackingOptions TrackingOptions::or_tracker(const char* name) const {
+  TrackingOptions out = *this;
+  if (out.tracker.empty()) out.tracker = name;
+  return out;
 }
 
 Result<PipelineSetup> TrackingOptions::setup(const Input& input) const {
@@ -37,6 +48,7 @@ Result<PipelineSetup> TrackingOptions::setup(const Input& input) const {
     out.frames.max_disparity = std::min(from_nearest, kMostDisparities);
   }
   out.tracker = tracker;
+  out.body_model = model == "heavy" ? BodyModel::kHeavy : model == "full" ? BodyModel::kFull : BodyModel::kLite;
   return out;
 }
 

@@ -14,12 +14,15 @@ struct TrackingOptions {
   static constexpr int kMostDisparities = 256;  // of every matcher: a large picture starts at a greater depth
 
   EngineOptions engine;
-  std::string tracker = "arm";
-  int max_disparity = 0;  // 0: what something at kNearest_m has
-  bool all_maps = false;  // frames are drawn or scored, not only tracked
-  bool in_bulk = false;   // of files: as many frames per second as can be, rather than each soon
+  std::string tracker;         // empty: the command's own
+  std::string model = "full";  // of a tracker with networks
+  int max_disparity = 0;       // 0: what something at kNearest_m has
+  bool all_maps = false;       // frames are drawn or scored, not only tracked
+  bool in_bulk = false;        // of files: as many frames per second as can be, rather than each soon
 
   void add_to(CLI::App& app);
+  /// With a tracker where none was chosen.
+  TrackingOptions or_tracker(const char* name) const;
   /// Errors  those of disparities_from()
   Result<PipelineSetup> setup(const Input& input) const;
 };

@@ -51,7 +51,7 @@ double now_ms() { return clock_ms(CLOCK_MONOTONIC); }
 Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options, const CLI::App& app) {
   std::unique_ptr<Player> player(new Player(options, app));
   DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, options.rig, options.input));
-  TrackingOptions tracking = options.tracking;
+  TrackingOptions tracking = options.tracking.or_tracker("body");
   tracking.all_maps = true;
   DUO_TRY_ASSIGN(PipelineSetup setup, tracking.setup(input));
   setup.check = options.check;

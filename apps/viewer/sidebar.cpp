@@ -88,6 +88,17 @@ bool Sidebar::draw(Player& player, Clicks& clicks, const Shown* shown, const std
 
 void Sidebar::put_clicks(Player& player, Clicks& clicks, const Shown* shown, const PlayerStatus& status) {
   const bool tracking = shown != nullptr && !shown->people.empty();
+  if (!player.asks_for_clicks()) {
+    const std::size_t people = tracking ? shown->people.size() : 0;
+    ImGui::PushFont(title_font());
+    colored(tracking ? kBox : kFaint, people == 0   ? "Looking for people"
+                                      : people == 1 ? "1 person"
+                                                    : fmt::format("{} people", people));
+    ImGui::PopFont();
+    if (!status.problem.empty()) colored(kBad, status.problem);
+    if (ImGui::Button("Look again", {-1, 0})) player.forget_people();
+    return;
+  }
   ImGui::PushFont(title_font());
   colored(clicks.wanted() ? kAccent
           : tracking      ? kBox

@@ -19,14 +19,16 @@ namespace duo::app::view {
 namespace {
 
 constexpr char kFooter[] =
-    "Click hand, elbow and shoulder in the left camera's picture, which stands still meanwhile; then the arm is tracked.\n"
+    "People are found and tracked by themselves. With --tracker arm click hand, elbow and shoulder in the left camera's "
+    "picture,\n"
+    "which stands still meanwhile; then the arm is tracked.\n"
     "Keys: Space pause, Right one frame, Backspace undo a click, R record, Home restart, F12 screenshot, Q close.\n"
     "Tracked frames are written and sent as track does, by the same options or the boxes in the window.\n\n"
     "Examples:\n"
     "  duoptic view synthetic                                                        a rendered person, live\n"
     "  duoptic view camera:0 camera:2 --rig rig.json\n"
     "  duoptic view left.avi right.avi --rig rig.json --loop\n"
-    "  duoptic view left.avi right.avi --rig rig.json --matcher pyramid -o arm.jsonl\n"
+    "  duoptic view left.avi right.avi --rig rig.json --tracker arm -o arm.jsonl\n"
     "  duoptic view left.avi right.avi --rig rig.json --screenshot view.png --after 30    closes after that frame";
 
 constexpr Size kWindow = {1440, 860};
@@ -203,7 +205,7 @@ Result<Exit> run(Options options, const CLI::App& app) {
 }  // namespace
 
 Command add(CLI::App& app) {
-  CLI::App* sub = app.add_subcommand("view", "A window: depth, points, and an arm tracked from three clicks");
+  CLI::App* sub = app.add_subcommand("view", "A window: depth, points, and people in 3D; or an arm tracked from three clicks");
   const auto options = std::make_shared<Options>();
   sub->add_option("LEFT", options->player.left,
                   "Picture or video of the left camera, the camera itself (camera:0, /dev/video0, http://, rtsp://, gst:),\nor "

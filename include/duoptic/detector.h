@@ -167,14 +167,16 @@ class PeopleFinder {
   struct Options {
     bool hands = false;
     std::size_t most = 8;  // people
+    int search_every = 4;  // pictures, while somebody is followed
   };
   PeopleFinder(Detector& detector, const Options& options);
   ~PeopleFinder();
 
   /// One picture by itself: every part is searched. Valid until the next call.
   std::span<const SeenPerson> look(View<const Rgb8> picture);
-  /// The next picture of a video: those seen before are followed, and one part is searched. Valid until the next call.
-  std::span<const SeenPerson> follow(View<const Rgb8> picture);
+  /// The next picture of a video: those seen before are followed, and one part is searched. `also`: where somebody may be who
+  /// was not seen in the last picture. Valid until the next call.
+  std::span<const SeenPerson> follow(View<const Rgb8> picture, std::span<const TurnedSquare> also = {});
 
  private:
   struct Memory;

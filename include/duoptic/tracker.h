@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "duoptic/detector.h"
 #include "duoptic/engine.h"
 #include "duoptic/frame.h"
 #include "duoptic/person.h"
@@ -42,8 +43,9 @@ struct TrackerSetup {
   Rig rig;
   Rectified rectified;  // of the frames to come
   double frame_s = 1.0 / 30;
-  int threads = 1;    // that the tracker may use; the result does not depend on them
-  bool live = false;  // a result that comes late is worth less
+  int threads = 1;                          // that the tracker may use; the result does not depend on them
+  bool live = false;                        // a result that comes late is worth less
+  BodyModel body_model = BodyModel::kLite;  // of trackers that have networks
 };
 
 /// Follows persons through frames that have what the tracker wants.
@@ -73,7 +75,8 @@ class Tracker {
   virtual std::span<const StageTime> stages() const { return {}; }
 };
 
-/// Makes a tracker by name: "arm" (hand, elbow and shoulder of one or two arms, through hiding), "thesis" (the method of 2010).
+/// Makes a tracker by name: "body" (whole people, found by themselves), "arm" (hand, elbow and shoulder of one or two arms that
+/// are clicked, through hiding), "thesis" (the method of 2010).
 ///
 /// Errors  unknown name, with the known ones
 Result<std::unique_ptr<Tracker>> make_tracker(std::string_view name);

@@ -72,6 +72,35 @@ void expect_turn(const Mat3& got, const Mat3& want, const std::string& what) {
   for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(got.m[i], want.m[i], 1e-9) << what << " " << i;
 }
 
+TEST(KnownPlaces, LostLimbsHangFromTheTrunk) {
+  Person person;
+  person.skeleton = &kBody;
+  for (std::size_t j = 0; j < person.count(); ++j) {
+    person.joints[j].state = JointState::kSeen;
+    person.joints[j].p_in_rig_m = {0, -0.1 * static_cast<double>(j), 2};
+  }
+  const auto at = [&](JointId id) -> Joint& { return person.joints[static_cast<std::size_t>(id)]; };
+  at(JointId::kPelvis).p_in_rig_m = {0, 0, 2};
+  at(JointId::kChest).p_in_rig_m = {0, -0.3, 2};
+  at(JointId::kLeftShoulder).p_in_rig_m = {0.2, -0.4, 2};
+  at(JointId::kRightShoulder).p_in_rig_m = {-0.2, -0.4, 2};
+  at(JointId::kLeftKnee).p_in_rig_m = {0.1, 0.4, 2};
+  at(JointId::kLeftAnkle).state = at(JointId::kLeftFoot).state = JointState::kLost;
+  const auto places = known_places(person, Mat3());
+  ASSERT_TRUE(places);
+  const auto expect = [&](JointId id, Vec3 want) {
+    EXPECT_NEAR(norm((*places)[static_cast<std::size_t>(id)] - want), 0, 1e-12) << name_of(id);
+  };
+  expect(JointId::kLeftKnee, {0.1, 0.4, 2});
+  expect(JointId::kLeftAnkle, {0.1, 0.81, 2});    // the shin of an adult below the knee
+  expect(JointId::kLeftFoot, {0.1, 0.81, 1.84});  // and the foot towards where the person looks
+  at(JointId::kChest).state = JointState::kLost;
+  EXPECT_FALSE(known_places(person, Mat3()));
+  person.skeleton = &kRightArm;  // of an arm nothing may be lost
+  person.joints[2].state = JointState::kLost;
+  EXPECT_FALSE(known_places(person, Mat3()));
+}
+
 TEST(BoneTurns, NoneInTheTPose) {
   const auto turns = BoneTurner(kBody, BodyAxes::kRightHanded).turn(t_pose());
   ASSERT_TRUE(turns);

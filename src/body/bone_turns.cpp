@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace duo {
@@ -36,6 +38,40 @@ Mat3 best_fit(std::span<const Vec3> rest, std::span<const Vec3> found) {
   return out;
 }
 
+/// From its parent to a joint of an adult who stands: arms and legs hang down.
+///
+/// Units  metres
+Vec3 hanging(JointId joint, Vec3 up, Vec3 left) {
+  using enum JointId;
+  const Vec3 side = kBody.joints[static_cast<std::size_t>(joint)].side == Side::kLeft ? left : -1.0 * left;
+  switch (joint) {
+    case kHead:
+      return 0.18 * up;
+    case kLeftElbow:
+    case kRightElbow:
+      return -0.25 * up;
+    case kLeftWrist:
+    case kRightWrist:
+      return -0.24 * up;
+    case kLeftHand:
+    case kRightHand:
+      return -0.07 * up;
+    case kLeftHip:
+    case kRightHip:
+      return 0.1 * side;
+    case kLeftKnee:
+    case kRightKnee:
+    case kLeftAnkle:
+    case kRightAnkle:
+      return -0.41 * up;
+    case kLeftFoot:
+    case kRightFoot:
+      return 0.16 * cross(left, up);
+    default:
+      return 0.1 * up;
+  }
+}
+
 }  // namespace
 
 // Who looks along z with y up has the left hand at +x when the axes are right-handed, at -x when they are left-handed.
@@ -63,10 +99,26 @@ Vec3 rest_direction(JointId joint, BodyAxes axes) {
 }
 
 std::optional<std::vector<Vec3>> known_places(const Person& person, const Mat3& axes_from_rig) {
+  const auto known = [&](JointId id) {
+    const Joint* joint = person.find(id);
+    return joint != nullptr && joint->state != JointState::kLost;
+  };
+  using enum JointId;
+  const bool has_trunk = std::ranges::all_of(std::array{kPelvis, kSpine, kChest, kLeftShoulder, kRightShoulder}, known);
   std::vector<Vec3> out;
   for (std::size_t j = 0; j < person.count(); ++j) {
-    if (person.joints[j].state == JointState::kLost) return std::nullopt;
-    out.push_back(axes_from_rig * person.joints[j].p_in_rig_m);
+    const Joint& joint = person.joints[j];
+    if (joint.state != JointState::kLost) {
+      out.push_back(axes_from_rig * joint.p_in_rig_m);
+      continue;
+    }
+    if (!has_trunk) return std::nullopt;
+    const Vec3 up = person.find(kChest)->p_in_rig_m - person.find(kPelvis)->p_in_rig_m;
+    const Vec3 left = person.find(kLeftShoulder)->p_in_rig_m - person.find(kRightShoulder)->p_in_rig_m;
+    if (!(norm(up) > 0) || !(norm(cross(left, up)) > 0)) return std::nullopt;
+    const JointDef& def = person.skeleton->joints[j];
+    const Vec3 way = hanging(def.id, normalized(up), normalized(left));
+    out.push_back(out[static_cast<std::size_t>(def.parent)] + axes_from_rig * way);
   }
   return out;
 }

@@ -21,7 +21,8 @@ enum class BodyAxes : std::uint8_t {
 /// Where the bone that ends in a joint points in the T-pose; its parent's joint is where it begins. Length 1.
 Vec3 rest_direction(JointId joint, BodyAxes axes);
 
-/// The places of a person's joints in the order of its skeleton; empty while one of them is lost.
+/// The places of a person's joints in the order of its skeleton; empty while one of them is lost. Of a whole body limbs may be
+/// lost, as legs below the picture are: they hang from the trunk, as long as an adult's.
 ///
 /// Units  metres
 std::optional<std::vector<Vec3>> known_places(const Person& person, const Mat3& axes_from_rig);

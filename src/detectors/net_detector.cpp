@@ -9,6 +9,7 @@
 #include "detectors/find_people.h"
 #include "detectors/place.h"
 #include "detectors/see_points.h"
+#include "detectors/small_hands.h"
 #include "duoptic/detector.h"
 #include "nets/net_file.h"
 #include "nets/net_run.h"
@@ -157,14 +158,14 @@ constexpr Model::Wanted kHandOutputs[] = {
 class NetDetector final : public Detector {
  public:
   NetDetector(int threads) : pool_(threads) {}
-  Result<void> open(const DetectorOptions& options) {
+  Result<void> open(const DetectorOptions& options, bool small_hands) {
     const std::filesystem::path folder = options.models.empty() ? models_folder() : options.models;
     constexpr const char* kNames[] = {"body_lite", "body_full", "body_heavy"};
     DUO_TRY(open_device(options));
     DUO_TRY_ASSIGN(finder_, Model::open(folder, "person_detector", kDetectorSide, kDetectorOutputs, how_));
     DUO_TRY_ASSIGN(body_, Model::open(folder, kNames[static_cast<int>(options.body)], kBodySide, kBodyOutputs, how_));
     if (!options.hands) return {};
-    const char* hand = options.body == BodyModel::kLite ? "hand_lite" : "hand_full";
+    const char* hand = small_hands ? "hand_lite" : "hand_full";
     DUO_TRY_ASSIGN(hand_, Model::open(folder, hand, kHandSide, kHandOutputs, how_));
     return {};
   }
@@ -229,10 +230,22 @@ std::filesystem::path models_folder() {
   return given != nullptr && *given != '\0' ? given : DUO_MODELS;
 }
 
-Result<std::unique_ptr<Detector>> make_detector(const DetectorOptions& options) {
+namespace {
+
+Result<std::unique_ptr<Detector>> opened(const DetectorOptions& options, bool small_hands) {
   auto detector = std::make_unique<NetDetector>(options.threads);
-  DUO_TRY(detector->open(options));
+  DUO_TRY(detector->open(options, small_hands));
   return std::unique_ptr<Detector>(std::move(detector));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Detector>> make_detector(const DetectorOptions& options) {
+  return opened(options, options.body == BodyModel::kLite);
+}
+
+Result<std::unique_ptr<Detector>> make_detector_with_small_hands(const DetectorOptions& options) {
+  return opened(options, true);
 }
 
 }  // namespace duo

@@ -8,7 +8,6 @@ namespace {
 
 constexpr std::uint16_t kHalf = 16384;  // a probability of 0.5
 constexpr std::uint16_t kSure = 21299;  // 0.65: who is new has to be surer than who is followed
-constexpr int kSearchEvery = 4;         // pictures, while somebody is followed
 constexpr int kLooks = 4;               // at what was found
 
 /// The whole picture first, then squares of 0.6 of its shorter side that overlap by a half: people too small for the whole.
@@ -194,15 +193,16 @@ std::span<const SeenPerson> PeopleFinder::look(View<const Rgb8> picture) {
   return m.finish(picture);
 }
 
-std::span<const SeenPerson> PeopleFinder::follow(View<const Rgb8> picture) {
+std::span<const SeenPerson> PeopleFinder::follow(View<const Rgb8> picture, std::span<const TurnedSquare> also) {
   Memory& m = *memory_;
   m.begin(picture);
   m.kept.clear();
   m.regions.clear();
   for (const SeenPerson& person : m.people) m.regions.push_back(person.body.next);
+  m.regions.insert(m.regions.end(), also.begin(), also.end());
   m.look_at(picture);
   m.keep();
-  if (m.picture++ % kSearchEvery == 0 || m.kept.empty()) {
+  if (m.picture++ % m.options.search_every == 0 || m.kept.empty()) {
     m.finds.clear();
     m.search(picture, m.parts[static_cast<std::size_t>(m.searches++) % m.parts.size()]);
     std::erase_if(m.finds, [&](const FoundPerson& found) {

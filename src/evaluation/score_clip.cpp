@@ -43,9 +43,12 @@ Result<Wanted> wanted(const Tracker& tracker, const ClipTruth& truth, std::vecto
   const auto add = [](const Skeleton& skeleton, std::vector<JointId>& to) {
     for (std::size_t j = skeleton.joints.size(); j-- > 0;) to.push_back(skeleton.joints[j].id);
   };
-  if (joints.empty())
+  if (joints.empty()) {
     for (const Skeleton* skeleton : tracker.skeletons())
       if (tracker.starts_by_itself() || skeleton->joints[0].side == truth.arm) add(*skeleton, joints);
+    if (tracker.starts_by_itself())  // whole bodies: the joints that the truth has
+      std::erase_if(joints, [&](JointId joint) { return !truth.check(joint); });
+  }
   Wanted out{std::move(joints), {}, {}};
   for (const JointId joint : out.joints) {
     DUO_TRY(truth.check(joint));

@@ -99,7 +99,7 @@ Result<void> Pipeline::State::prepare() {
 
 Result<void> Pipeline::State::prepare_tracker() {
   if (tracker == nullptr) return {};
-  return tracker->prepare({*setup.frames.rig, header.rectified, header.frame_s, setup.threads, header.live});
+  return tracker->prepare({*setup.frames.rig, header.rectified, header.frame_s, setup.threads, header.live, setup.body_model});
 }
 
 /// The threads, at the first pair that is asked for.

@@ -8,6 +8,7 @@
 #include "engines/engines.h"
 #include "matchers/matchers.h"
 #include "trackers/arm/arm_tracker.h"
+#include "trackers/body/body_tracker.h"
 #include "trackers/thesis/thesis_tracker.h"
 
 namespace duo {
@@ -40,7 +41,7 @@ struct KnownTracker {
   std::string_view name;
   std::unique_ptr<Tracker> (*make)();
 };
-constexpr KnownTracker kTrackers[] = {{"arm", make_arm_tracker}, {"thesis", make_thesis_tracker}};
+constexpr KnownTracker kTrackers[] = {{"body", make_body_tracker}, {"arm", make_arm_tracker}, {"thesis", make_thesis_tracker}};
 
 }  // namespace
 

@@ -172,7 +172,8 @@ TEST_F(Track, ClipsOfDifferentLengthGiveAWarning) {
 TEST_F(Track, BadSelections) {
   const std::string pair = "track left.mp4 right.mp4 --rig rig.json ";
   const std::string rest = " --select elbow=160,77 --select shoulder=160,54";
-  expect_failure(pair, kUsage, "--select");
+  expect_failure(pair + "--tracker arm", kUsage, "--select");
+  expect_failure(pair + "--tracker body" + kSelect, kUsage, "leave out");
   expect_failure(pair + "--select hand=160,100 --select elbow=160,77", kUsage, "right_shoulder is missing");
   expect_failure(pair + "--select hand=1,1 --select hand=2,2" + rest, kUsage, "right_hand is given twice");
   for (const char* bad :
@@ -227,7 +228,7 @@ TEST_F(Track, EvalClipAgainstATruthFile) {
     truth["frames"].push_back(
         {{"joints", {{"left_hand", joint(100, i > 0)}, {"left_elbow", joint(77, true)}, {"left_shoulder", joint(54, true)}}}});
   put(at("clip/truth.json"), truth.dump());
-  const Ended ended = run("eval clip clip --json");
+  const Ended ended = run("eval clip clip --tracker arm --json");
   ASSERT_EQ(ended.exit, 0) << ended.err;
   const auto report = nlohmann::json::parse(ended.out, nullptr, false);
   ASSERT_TRUE(report.is_object()) << ended.out;
@@ -240,12 +241,20 @@ TEST_F(Track, EvalClipAgainstATruthFile) {
   EXPECT_GT(clip["joints"]["left_hand"]["median_mm"], 100.0);  // the wall is not where this truth has the hand
 
   // Any joint by its name, of both arms too.
-  const Ended one = run("eval clip clip --json --joints left_elbow");
+  const Ended one = run("eval clip clip --tracker arm --json --joints left_elbow");
   ASSERT_EQ(one.exit, 0) << one.err;
   const auto elbow = nlohmann::json::parse(one.out, nullptr, false)["clips"][0]["joints"];
   EXPECT_EQ(elbow.size(), 1u);
   EXPECT_EQ(elbow["left_elbow"], clip["joints"]["left_elbow"]);
   EXPECT_EQ(run("eval clip clip --joints elbow").exit, kUsage);
+
+  // Without clicks whole people are looked for; the room has none.
+  const Ended nobody = run("eval clip clip --json");
+  ASSERT_EQ(nobody.exit, 0) << nobody.err;
+  const auto lost = nlohmann::json::parse(nobody.out, nullptr, false)["clips"][0];
+  EXPECT_EQ(lost["tracker"], "body");
+  EXPECT_EQ(lost["joints"]["left_elbow"]["lost_or_off_percent"], 100.0);
+  EXPECT_EQ(lost["joints"].size(), 3u);  // those that the truth has
 
   const auto fails = [&](const std::string& folder, const std::string& words) {
     const Ended bad = run("eval clip " + folder);

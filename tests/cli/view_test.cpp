@@ -80,7 +80,7 @@ double farthest_m(const nlohmann::json& line, const nlohmann::json& header, Synt
 TEST_F(Running, ThreeClicksTrackALivePerson) {
   auto person = SyntheticClip::open({.size = kPersonSize, .script = "wave"}, 2);
   ASSERT_TRUE(person);
-  start("synthetic:wave:240x180:20 --paused --matcher pyramid -o lines.jsonl");
+  start("synthetic:wave:240x180:20 --tracker arm --paused --matcher pyramid -o lines.jsonl");
   const Arm first = arm_of(*person, 0);
   const char* prompts[] = {"right hand (1 of 3)", "right elbow (2 of 3)", "right shoulder (3 of 3)"};
   for (std::size_t j = 0; j < 3; ++j) {
@@ -137,7 +137,7 @@ TEST_F(Running, ThreeClicksTrackALivePerson) {
 
 /// One picture of each camera is a stream that has ended when its arms are selected.
 TEST_F(Running, BothArmsOfAStillPicture) {
-  start("left.png right.png --rig rig.json -o still.jsonl");
+  start("left.png right.png --rig rig.json --tracker arm -o still.jsonl");
   wait_for_title("right hand (1 of 3)");
   told("xdotool mousemove --window " + window_ + " 1256 51 click 1");  // both
   for (int i = 0; i < 6; ++i) {
@@ -159,7 +159,7 @@ TEST_F(Running, BothArmsOfAStillPicture) {
 
 TEST_F(Running, ABoxOfOutputsWritesItsFile) {
   constexpr int kBox_px[2] = {1134, 331};  // of CSV, where Outputs are unfolded
-  start("left.mp4 right.mp4 --rig rig.json --paused");
+  start("left.mp4 right.mp4 --rig rig.json --tracker arm --paused");
   wait_for_title("right hand (1 of 3)");
   told("xdotool mousemove --window " + window_ + " 1273 237 click 1");  // Outputs
   EXPECT_EQ(near(screenshot(), kBox_px[0], kBox_px[1], 9, kTick), 0);
@@ -182,7 +182,7 @@ TEST_F(Running, ABoxOfOutputsWritesItsFile) {
 }
 
 TEST_F(Running, AnInterruptCompletesTheLines) {
-  start("left.mp4 right.mp4 --rig rig.json --loop -o interrupted.jsonl");
+  start("left.mp4 right.mp4 --rig rig.json --tracker arm --loop -o interrupted.jsonl");
   wait_for_title("Click");
   kill(std::atoi(bytes_of(at("view.txt")).c_str()), SIGTERM);
   expect_end(0);

@@ -1,0 +1,357 @@
+#include "trackers/body/body.h"
+
+#include <algorithm>
+
+namespace duo::body {
+namespace {
+
+constexpr double kNear_m = 0.25, kFar_m = 15;
+constexpr double kReachBefore_m = 0.95, kReachBehind_m = 0.6;
+
+std::array<Vec2, 4> corners_of(const SeenBody& seen) {
+  using enum BodyPoint;
+  const auto at = [&](BodyPoint point) { return Vec2{seen.at(point).x_px(), seen.at(point).y_px()}; };
+  return {at(kLeftShoulder), at(kRightShoulder), at(kLeftHip), at(kRightHip)};
+}
+
+double length(Vec2 a, Vec2 b) { return std::sqrt(square(a.x - b.x) + square(a.y - b.y)); }
+
+/// The parts of a person's depth that are possible around its trunk.
+DepthRange around(double trunk_z) { return {std::max(trunk_z - kReachBefore_m, kNear_m), trunk_z + kReachBehind_m}; }
+
+/// The body's joints as the network imagines them, put where the trunk is.
+Places imagined(const FrameView& frame, const SeenBody& seen, const Points& points, double trunk_z) {
+  using enum BodyPoint;
+  const auto depth_of = [&](BodyPoint point) { return seen.at(point).world_m().z; };
+  const double trunk = (depth_of(kLeftShoulder) + depth_of(kRightShoulder) + depth_of(kLeftHip) + depth_of(kRightHip)) / 4;
+  Places out;
+  const auto put = [&](JointId id, BodyPoint point) {
+    const double z = std::clamp(trunk_z + 0.1 + depth_of(point) - trunk, kNear_m, kFar_m);
+    out[id] = frame.depth.geometry->unproject(points[id].at_px, z);
+  };
+  put(JointId::kHead, kLeftEar);
+  put(JointId::kLeftShoulder, kLeftShoulder);
+  put(JointId::kRightShoulder, kRightShoulder);
+  put(JointId::kLeftElbow, kLeftElbow);
+  put(JointId::kRightElbow, kRightElbow);
+  put(JointId::kLeftWrist, kLeftWrist);
+  put(JointId::kRightWrist, kRightWrist);
+  put(JointId::kLeftHand, kLeftIndex);
+  put(JointId::kRightHand, kRightIndex);
+  put(JointId::kLeftHip, kLeftHip);
+  put(JointId::kRightHip, kRightHip);
+  put(JointId::kLeftKnee, kLeftKnee);
+  put(JointId::kRightKnee, kRightKnee);
+  put(JointId::kLeftAnkle, kLeftAnkle);
+  put(JointId::kRightAnkle, kRightAnkle);
+  put(JointId::kLeftFoot, kLeftFootIndex);
+  put(JointId::kRightFoot, kRightFootIndex);
+  complete(out);
+  return out;
+}
+
+TrunkColor color_of(const FrameView& frame, const std::array<Vec2, 4>& corners) {
+  constexpr int kSide = 12;
+  double red = 0, green = 0, blue = 0;
+  int count = 0;
+  for (int j = 0; j < kSide; ++j)
+    for (int i = 0; i < kSide; ++i) {
+      const double a = 0.2 + 0.6 * i / (kSide - 1), b = 0.15 + 0.7 * j / (kSide - 1);
+      const double x = (1 - b) * ((1 - a) * corners[0].x + a * corners[1].x) + b * ((1 - a) * corners[2].x + a * corners[3].x);
+      const double y = (1 - b) * ((1 - a) * corners[0].y + a * corners[1].y) + b * ((1 - a) * corners[2].y + a * corners[3].y);
+      if (!(x >= 0 && y >= 0 && x <= frame.picture.width() - 1 && y <= frame.picture.height() - 1)) continue;
+      const Rgb8 pixel = frame.picture.at(static_cast<int>(y + 0.5), static_cast<int>(x + 0.5));
+      red += pixel.r;
+      green += pixel.g;
+      blue += pixel.b;
+      ++count;
+    }
+  const double sum = red + green + blue;
+  if (count < kSide || !(sum > 0)) return {};
+  return {red / sum, green / sum, sum / (3 * 255.0 * count), true};
+}
+
+Vec2 centre_of(const std::array<Vec2, 4>& corners) { return mean(mean(corners[0], corners[1]), mean(corners[2], corners[3])); }
+
+/// A hand that its network found far from where the body's network has it is another one.
+bool belongs(const SeenHand& hand, const Point& wrist, double px_per_m) {
+  constexpr double kNear_hand_m = 0.12;
+  constexpr std::uint16_t kSure = 16384;
+  if (hand.score_q15 < kSure) return false;
+  return length({hand.points[0].x_px(), hand.points[0].y_px()}, wrist.at_px) < kNear_hand_m * px_per_m;
+}
+
+}  // namespace
+
+std::optional<Body> Body::start(const FrameView& frame, const SeenBody& seen) {
+  constexpr double kLeastScale = 0.5, kMostScale = 1.4, kStartSigma_m = 0.12, kBehind_m = 0.1;
+  const double z = trunk_depth(frame.depth, corners_of(seen), {kNear_m, kFar_m});
+  if (z == 0 || !stands_out(frame.depth, corners_of(seen))) return std::nullopt;
+  // How large the person is: the trunk as it is seen beside the trunk as the network imagines it.
+  const Lengths adult;
+  const double px_per_m = frame.depth.px_per_m(z + kBehind_m);
+  const Points points = points_of(seen, frame.model, frame.picture.size(), px_per_m, adult[Bone::kShoulders]);
+  const auto at = [&](JointId id) { return points[id].at_px; };
+  const double trunk_px = length(mean(at(JointId::kLeftShoulder), at(JointId::kRightShoulder)),
+                                 mean(at(JointId::kLeftHip), at(JointId::kRightHip)));
+  const Vec3 up = 0.5 * (seen.at(BodyPoint::kLeftShoulder).world_m() + seen.at(BodyPoint::kRightShoulder).world_m());
+  const double upright = std::sqrt(square(up.x) + square(up.y)) / std::max(norm(up), 1e-6);
+  const double scale = trunk_px / px_per_m / std::max(upright, 0.5) / adult[Bone::kTrunk];
+  if (!(scale > kLeastScale && scale < kMostScale)) return std::nullopt;
+  Body body(std::clamp(scale, 0.6, 1.12));
+  body.fitted_.places = imagined(frame, seen, points, z);
+  body.trunk_z_m_ = z;
+  for (const JointId id : kFreeJoints) body.states_[id].sigma_m = kStartSigma_m;
+  return body;
+}
+
+Vec3 Body::expected_trunk() const {
+  using enum JointId;
+  const auto at = [&](JointId id) { return fitted_.places[id] + states_[id].step; };
+  return middle(middle(at(kLeftShoulder), at(kRightShoulder)), middle(at(kLeftHip), at(kRightHip)));
+}
+
+TurnedSquare Body::expected_region(const FrameView& frame) const {
+  const Vec3 p = expected_trunk();
+  const Vec2 now = frame.depth.geometry->project({p.x, p.y, std::max(p.z, kNear_m)});
+  TurnedSquare out = region_;
+  const auto q8 = [](double px) { return static_cast<std::int32_t>(std::lround(256 * std::clamp(px, -1e5, 1e5))); };
+  out.x_q8 += q8(now.x - region_from_px_.x);
+  out.y_q8 += q8(now.y - region_from_px_.y);
+  return out;
+}
+
+double Body::unlike(const FrameView& frame, const SeenBody& seen) const {
+  constexpr double kNear = 0.6, kNear_depth_m = 0.4, kColor = 0.08, kBright = 0.35, kMostMissed = 10;
+  const auto corners = corners_of(seen);
+  const Vec3 expected = expected_trunk();
+  const double z = std::max(expected.z, kNear_m), patience = 1 + 0.3 * std::min<double>(missed_, kMostMissed);
+  const Vec2 there = frame.depth.geometry->project({expected.x, expected.y, z});
+  const double off = length(there, centre_of(corners)) / (lengths_[Bone::kTrunk] * frame.depth.px_per_m(z) * kNear * patience);
+  const double found = trunk_depth(frame.depth, corners, {kNear_m, kFar_m});
+  const double deep = found > 0 ? (found - trunk_z_m_) / (kNear_depth_m * patience) : 0;
+  const TrunkColor color = color_of(frame, corners);
+  double other = 0;
+  if (color.known && color_.known)
+    other = (square(color.red - color_.red) + square(color.green - color_.green)) / square(kColor) +
+            square((color.bright - color_.bright) / kBright);
+  return std::sqrt(square(off) + square(deep) + std::min(other, 1.0) / 4);
+}
+
+void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hands) {
+  Scene scene;
+  Choices chosen;
+  scene.depth = frame.depth;
+  scene.lengths = &lengths_;
+  scene.map = &map_;
+
+  predict(scene, frame.frame_s);
+  detect(frame, seen, hands, scene);
+  lift(scene);
+  choose(scene, chosen);
+  sample_limbs(scene, chosen, samples_);
+  fit_.run(scene, chosen, samples_, fitted_);
+  update(frame, scene, chosen);
+  learn(scene, chosen);
+}
+
+void Body::predict(Scene& scene, double frame_s) const {
+  constexpr double kSeenDrift = 0.9, kHiddenDrift = 0.6, kMostSigma_m = 0.3, kAstray = 2;
+  for (const JointId id : kFreeJoints) {
+    const State& state = states_[id];
+    Expected& expected = scene.expected[id];
+    expected.p = fitted_.places[id] + (state.seen ? kSeenDrift : kHiddenDrift) * state.step;
+    // A hidden joint goes astray like a random walk.
+    const double unrest = unrest_m(id) * 30 * frame_s * (1 + 0.5 * std::min(missed_, 10));
+    expected.sigma_m = std::min(unrest * std::sqrt(1.0 + kAstray * state.hidden), kMostSigma_m);
+    if (age_ == 0) expected.sigma_m = state.sigma_m;
+    expected.hidden = state.hidden;
+  }
+}
+
+void Body::detect(const FrameView& frame, const SeenBody& seen, const Hands& hands, Scene& scene) {
+  constexpr double kMostStep_m = 0.06, kGate_m = 0.35;
+  const double found =
+      trunk_depth(frame.depth, corners_of(seen), {std::max(trunk_z_m_ - kGate_m, kNear_m), trunk_z_m_ + kGate_m});
+  if (found > 0) trunk_z_m_ += std::clamp(found - trunk_z_m_, -kMostStep_m * (1 + missed_), kMostStep_m * (1 + missed_));
+  scene.trunk_z_m = trunk_z_m_;
+  region_ = seen.next;
+  region_from_px_ = centre_of(corners_of(seen));
+  if (const TrunkColor now = color_of(frame, corners_of(seen)); now.known) {
+    const double gain = color_.known ? 0.05 : 1;
+    color_ = {color_.red + gain * (now.red - color_.red), color_.green + gain * (now.green - color_.green),
+              color_.bright + gain * (now.bright - color_.bright), true};
+  }
+  const double px_per_m = frame.depth.px_per_m(trunk_z_m_);
+  scene.points = points_of(seen, frame.model, frame.picture.size(), px_per_m, lengths_[Bone::kShoulders]);
+  scene.across = across_of(seen, expected_trunk());
+  for (const bool left : {true, false}) detect_hand(frame, hands.seen[left ? 0 : 1], left, scene);
+  Places expected = fitted_.places;
+  for (const JointId id : kFreeJoints) expected[id] = scene.expected[id].p;
+  scene.trunk = trunk_axes(expected);
+}
+
+void Body::detect_hand(const FrameView& frame, const SeenHand* hand, bool left, Scene& scene) {
+  const std::size_t side = left ? 0 : 1;
+  const JointId wrist_id = left ? JointId::kLeftWrist : JointId::kRightWrist;
+  if (hand != nullptr) {
+    const bool is_there =
+        belongs(*hand, scene.points[wrist_id], frame.depth.px_per_m(std::max(fitted_.places[wrist_id].z, kNear_m)));
+    sight_[side] = is_there ? HandSight::kSeen : HandSight::kAbsent;
+    if (is_there) hand_shift_[side] = take_hand(*hand, left, scene.points);
+  } else if (sight_[side] == HandSight::kSeen) {
+    take_shift(hand_shift_[side], left, scene.points);
+  }
+  scene.hands[side] = sight_[side];
+  if (hand == nullptr) sight_[side] = HandSight::kNotAsked;  // an answer lasts for one frame more
+  constexpr double kBeyond = 1.1;                            // fingers lie beyond the palm's centre
+  const Vec2 palm = scene.points[left ? JointId::kLeftHand : JointId::kRightHand].at_px, wrist = scene.points[wrist_id].at_px;
+  const Vec2 end = {wrist.x + kBeyond * (palm.x - wrist.x), wrist.y + kBeyond * (palm.y - wrist.y)};
+  if (!(end.x >= 0 && end.y >= 0 && end.x < frame.picture.width() && end.y < frame.picture.height()))
+    scene.hands[side] = HandSight::kOutside;
+}
+
+void Body::lift(Scene& scene) const {
+  const DepthRange range = around(trunk_z_m_);
+  for (const JointId id : kFreeJoints)
+    if (scene.points[id].inside)
+      scene.surfaces[id] =
+          surfaces_at(scene.depth, scene.points[id].at_px, std::max(scene.expected[id].p.z, kNear_m), half_window_m(id), range);
+}
+
+void Body::update(const FrameView& frame, const Scene& scene, const Choices& chosen) {
+  constexpr double kStepGain = 0.5, kFar_off_m = 0.12, kFar_off_px = 6, kTooFar_m = 0.15;
+  missed_ = 0;
+  ++age_;
+  for (const JointId id : kFreeJoints) {
+    State& state = states_[id];
+    const Vec3 p = fitted_.places[id];
+    const Vec2 at = frame.depth.geometry->project(p);
+    const Point& point = scene.points[id];
+    state.seen = chosen[id].on_surface && point.inside && std::abs(p.z - chosen[id].p.z) < kFar_off_m &&
+                 length(at, point.at_px) < std::max(kFar_off_px * point.sigma_px, kTooFar_m * frame.depth.px_per_m(p.z));
+    const bool was_hidden = state.hidden > 2;
+    // After a gap one sight may be a mistake.
+    state.sure = state.seen && (state.sure || state.seen_before || age_ == 1);
+    state.seen_before = state.seen;
+    state.hidden = state.seen ? 0 : state.hidden + 1;
+    const Vec3 off = p - scene.expected[id].p;
+    const double drift = state.seen ? 0.9 : 0.6;
+    state.step = was_hidden && state.seen ? Vec3{} : drift * state.step + kStepGain * off;
+    const double longest = 0.2, now = norm(state.step);
+    if (now > longest) state.step = (longest / now) * state.step;
+    state.sigma_m = std::sqrt(fitted_.covariance[id].sigma_m() * fitted_.covariance[id].sigma_m() / 3);
+  }
+}
+
+void Body::learn(const Scene& scene, const Choices& chosen) {
+  using enum JointId;
+  constexpr double kFacing = 0.7;  // of the width: turned by less than 45 degrees
+  const auto seen = [&](JointId id) { return states_[id].seen; };
+  const auto measured = [&](JointId id) {
+    return scene.depth.geometry->unproject(scene.points[id].at_px, fitted_.places[id].z);
+  };
+  const auto take = [&](JointId a, JointId b, Bone bone) {
+    if (!seen(a) || !seen(b)) return;
+    const Vec3 way = measured(b) - measured(a);
+    const double long_ = std::max(norm(way), 1e-6), across = std::sqrt(square(way.x) + square(way.y)) / long_;
+    const double weight = square(across) * std::min(scene.points[a].visibility, scene.points[b].visibility);
+    if (across > 0.5) lengths_.learn(bone, long_, weight);
+  };
+  for (const Limb& arm : kArmChains) {
+    take(arm[0], arm[1], Bone::kUpperArm);
+    take(arm[1], arm[2], Bone::kForearm);
+    take(arm[2], arm[3], Bone::kPalm);
+  }
+  for (const Limb& leg : kLegChains) {
+    take(leg[0], leg[1], Bone::kThigh);
+    take(leg[1], leg[2], Bone::kShin);
+    take(leg[2], leg[3], Bone::kFoot);
+  }
+  if (std::abs(scene.across.shoulders.z) < kFacing) take(kLeftShoulder, kRightShoulder, Bone::kShoulders);
+  if (std::abs(scene.across.hips.z) < kFacing) take(kLeftHip, kRightHip, Bone::kHips);
+  if (seen(kLeftShoulder) && seen(kRightShoulder) && seen(kLeftHip) && seen(kRightHip)) {
+    const Vec3 shoulders = middle(measured(kLeftShoulder), measured(kRightShoulder)),
+               hips = middle(measured(kLeftHip), measured(kRightHip));
+    lengths_.learn(Bone::kTrunk, distance(shoulders, hips), 1);
+    if (seen(kHead)) lengths_.learn(Bone::kNeckHead, distance(shoulders, measured(kHead)), 1);
+    if (std::abs(scene.across.shoulders.z) < kFacing) map_.learn(scene.depth, trunk_axes(fitted_.places), fitted_.places);
+  }
+  (void)chosen;
+}
+
+void Body::miss(const FrameView&) {
+  constexpr double kDrift = 0.6;
+  ++missed_;
+  for (const JointId id : kFreeJoints) {
+    State& state = states_[id];
+    state.step = kDrift * state.step;
+    fitted_.places[id] = fitted_.places[id] + state.step;
+    state.seen = state.sure = state.seen_before = false;
+    ++state.hidden;
+    state.sigma_m = std::sqrt(square(state.sigma_m) + square(2 * unrest_m(id)));
+  }
+  complete(fitted_.places);
+}
+
+std::optional<TurnedSquare> Body::hand_region(const FrameView& frame, const SeenBody& seen, bool left) const {
+  constexpr double kLeastHand_px = 36, kHand_m = 0.18, kHalf_m = 0.15, kBeyond_m = 0.085;
+  using enum BodyPoint;
+  const auto at = [&](BodyPoint point) { return Vec2{seen.at(point).x_px(), seen.at(point).y_px()}; };
+  const JointId wrist_id = left ? JointId::kLeftWrist : JointId::kRightWrist;
+  const double z = std::max(fitted_.places[wrist_id].z + states_[wrist_id].step.z, kNear_m);
+  const double px_per_m = frame.depth.px_per_m(z);
+  if (px_per_m * kHand_m < kLeastHand_px) return std::nullopt;
+  const Vec2 wrist = at(left ? kLeftWrist : kRightWrist), elbow = at(left ? kLeftElbow : kRightElbow);
+  const Vec2 knuckles = mean(at(left ? kLeftIndex : kRightIndex), at(left ? kLeftPinky : kRightPinky));
+  const auto unit = [](Vec2 from, Vec2 to) {
+    const double n = std::max(length(from, to), 1e-6);
+    return Vec2{(to.x - from.x) / n, (to.y - from.y) / n};
+  };
+  const Vec2 hand = unit(wrist, knuckles), fore = unit(elbow, wrist);
+  const Vec2 along = unit({0, 0}, {0.6 * hand.x + 0.4 * fore.x, 0.6 * hand.y + 0.4 * fore.y});
+  const double beyond = kBeyond_m * px_per_m, half = kHalf_m * px_per_m;
+  const Vec2 centre = {wrist.x + beyond * along.x, wrist.y + beyond * along.y};
+  if (!(centre.x >= 0 && centre.y >= 0 && centre.x < frame.picture.width() && centre.y < frame.picture.height()))
+    return std::nullopt;
+  const auto q8 = [](double px) { return static_cast<std::int32_t>(std::lround(256 * px)); };
+  return TurnedSquare{q8(centre.x), q8(centre.y), q8(-along.y * half), q8(along.x * half)};
+}
+
+void Body::publish(const FrameView& frame, Person& person) const {
+  using enum JointId;
+  constexpr double kScale = 1.4, kFloor_m = 0.006, kLost_m = 0.45;
+  const Places places = with_lengths(fitted_.places, lengths_);
+  const auto fill = [&](JointId id, Vec3 p, const Covariance3& c, JointState state, Vec3 step) {
+    Joint& joint = person.joints[index_of(id)];
+    joint.p_in_rig_m = p;
+    const double k = square(kScale), floor = square(kFloor_m);
+    joint.cov_m2 = {k * c.xx + floor, k * c.xy, k * c.xz, k * c.yy + floor, k * c.yz, k * c.zz + floor};
+    joint.v_in_rig_m_s = (1 / frame.frame_s) * step;
+    joint.state = joint.sigma_m() > kLost_m ? JointState::kLost : state;
+    joint.confidence = joint.state == JointState::kLost ? 0 : 1 / (1 + square(joint.sigma_m() / 0.1));
+  };
+  for (const JointId id : kFreeJoints) {
+    const State& state = states_[id];
+    Covariance3 c = fitted_.covariance[id];
+    if (!state.sure) {
+      const double grown = square(0.035 + 0.4 * std::min(state.hidden, 30) * frame.frame_s);
+      c.xx += grown;
+      c.yy += grown;
+      c.zz += grown;
+    }
+    fill(id, places[id], c, state.sure ? JointState::kSeen : JointState::kInferred, state.step);
+  }
+  const auto between = [&](JointId id, JointId a, JointId b) {
+    const Covariance3 &ca = person.joints[index_of(a)].cov_m2, &cb = person.joints[index_of(b)].cov_m2;
+    const Covariance3 c = {(ca.xx + cb.xx) / 4, 0, 0, (ca.yy + cb.yy) / 4, 0, (ca.zz + cb.zz) / 4};
+    const bool seen = states_[a].sure || states_[b].sure;
+    fill(id, places[id], c, seen ? JointState::kSeen : JointState::kInferred, 0.5 * (states_[a].step + states_[b].step));
+  };
+  between(kPelvis, kLeftHip, kRightHip);
+  between(kSpine, kLeftHip, kRightHip);
+  between(kChest, kLeftShoulder, kRightShoulder);
+  between(kNeck, kLeftShoulder, kRightShoulder);
+}
+
+}  // namespace duo::body

@@ -1,0 +1,84 @@
+// One person, from frame to frame.
+#pragma once
+
+#include <optional>
+
+#include "duoptic/person.h"
+#include "trackers/body/fit.h"
+
+namespace duo::body {
+
+/// What a frame offers to all bodies.
+struct FrameView {
+  DepthView depth;
+  View<const Rgb8> picture;
+  double frame_s = 1.0 / 30;
+  BodyModel model = BodyModel::kLite;  // that marked the points
+};
+
+/// Mean colour of a trunk: shares of red and green, and how bright.
+struct TrunkColor {
+  double red = 1.0 / 3, green = 1.0 / 3, bright = 0;
+  bool known = false;
+};
+
+/// Follows one person: predict, detect, lift, choose, fit, learn.
+class Body {
+ public:
+  /// None where the frame shows no depth on the trunk, or a trunk that no person has.
+  static std::optional<Body> start(const FrameView& frame, const SeenBody& seen);
+
+  /// Where the trunk's middle is expected in the next frame, and its depth.
+  Vec3 expected_trunk() const;
+  /// Where to look for the body in the next frame after one that did not show it.
+  TurnedSquare expected_region(const FrameView& frame) const;
+  /// How unlike a seen body is: 0 the same, 1 hardly the same.
+  double unlike(const FrameView& frame, const SeenBody& seen) const;
+  /// Asks the detector for hands: where to look, this frame. None when the hand would be too small or is out of the picture.
+  std::optional<TurnedSquare> hand_region(const FrameView& frame, const SeenBody& seen, bool left) const;
+
+  struct Hands {
+    std::array<const SeenHand*, 2> seen = {};  // left, right; null: not asked
+  };
+  void track(const FrameView& frame, const SeenBody& seen, const Hands& hands);
+  /// A frame in which nothing was seen of the person.
+  void miss(const FrameView& frame);
+
+  const Places& places() const { return fitted_.places; }
+  const Lengths& lengths() const { return lengths_; }
+  int missed() const { return missed_; }
+  /// Fills all joints of `person`, whose skeleton is kBody, but for their pixels.
+  void publish(const FrameView& frame, Person& person) const;
+
+ private:
+  struct State {
+    Vec3 step;  // since the last frame, smoothed
+    int hidden = 0;
+    double sigma_m = 0.1;
+    bool seen = false, seen_before = false, sure = false;
+  };
+
+  explicit Body(double scale) : lengths_(scale) {}
+  void predict(Scene& scene, double frame_s) const;
+  void detect(const FrameView& frame, const SeenBody& seen, const Hands& hands, Scene& scene);
+  void detect_hand(const FrameView& frame, const SeenHand* hand, bool left, Scene& scene);
+  void lift(Scene& scene) const;
+  void update(const FrameView& frame, const Scene& scene, const Choices& chosen);
+  void learn(const Scene& scene, const Choices& chosen);
+
+  Lengths lengths_;
+  SurfaceMap map_;
+  Fitted fitted_;
+  PerJoint<State> states_;
+  LimbSamples samples_;
+  Fit fit_;
+  std::array<HandShift, 2> hand_shift_ = {};  // left, right
+  std::array<HandSight, 2> sight_ = {};
+  TurnedSquare region_;  // where the body was looked for last
+  Vec2 region_from_px_;  // where its trunk was then
+  TrunkColor color_;
+  double trunk_z_m_ = 0;
+  int missed_ = 0, age_ = 0;
+};
+
+}  // namespace duo::body

@@ -1,0 +1,368 @@
+// The steps of the body tracker against numbers worked out by hand.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "trackers/body/fit.h"
+
+namespace duo::body {
+namespace {
+
+using enum JointId;
+
+/// 400 px focal length, 0.1 m baseline: 40 m px.
+Rectified geometry() {
+  Rectified out;
+  static_cast<Pinhole&>(out) = {400, 160, 120, 0.1};
+  out.size = {320, 240};
+  return out;
+}
+
+std::uint16_t q4_at(double z_m) { return static_cast<std::uint16_t>(std::lround(16 * (40 / z_m - DepthView::kShort_px))); }
+
+struct Map {
+  Rectified geometry_ = geometry();
+  Image<std::uint16_t> d_q4 = Image<std::uint16_t>({320, 240});
+  Map() { fill({0, 0, 320, 240}, 0); }
+  void fill(Window window, double z_m) {
+    for (int y = window.y; y < window.y_end(); ++y)
+      for (int x = window.x; x < window.x_end(); ++x) d_q4.at(y, x) = z_m > 0 ? q4_at(z_m) : Disparity::kNone;
+  }
+  DepthView view() const { return {d_q4.view(), &geometry_}; }
+};
+
+TEST(BodyLift, AWindowOverTwoSurfacesGivesBothNearestFirst) {
+  Map map;
+  map.fill({100, 0, 60, 240}, 2.5);
+  map.fill({160, 0, 60, 240}, 2.0);
+  const Surfaces both = surfaces_at(map.view(), {159.5, 120}, 2, 0.05, {1, 4});
+  ASSERT_EQ(both.count, 2u);
+  EXPECT_NEAR(both.all[0].z_m, 2.0, 0.01);
+  EXPECT_NEAR(both.all[1].z_m, 2.5, 0.01);
+  EXPECT_NEAR(both.all[0].share + both.all[1].share, 1, 1e-9);
+  EXPECT_EQ(surfaces_at(map.view(), {159.5, 120}, 2, 0.05, {2.2, 4}).count, 1u);  // the near one is out of range
+  EXPECT_EQ(surfaces_at(map.view(), {20, 120}, 2, 0.05, {1, 4}).count, 0u);       // nothing is known there
+  EXPECT_EQ(surfaces_at(map.view(), {-500, 1e9}, 2, 0.05, {1, 4}).count, 0u);
+}
+
+TEST(BodyLift, AGapBelowTwoCentimetresIsOneSurface) {
+  Map map;
+  map.fill({100, 0, 60, 240}, 1.01);
+  map.fill({160, 0, 60, 240}, 1.0);
+  EXPECT_EQ(surfaces_at(map.view(), {159.5, 120}, 1, 0.05, {0.5, 4}).count, 1u);
+}
+
+TEST(BodyLift, TheTrunksDepthIsItsMedian) {
+  Map map;
+  map.fill({120, 60, 80, 120}, 2.0);
+  map.fill({120, 60, 25, 120}, 1.5);  // an arm before a third of it
+  EXPECT_NEAR(trunk_depth(map.view(), {Vec2{200, 60}, Vec2{120, 60}, Vec2{200, 180}, Vec2{120, 180}}, {0.5, 5}), 2.0, 0.01);
+  EXPECT_EQ(trunk_depth(map.view(), {Vec2{60, 60}, Vec2{10, 60}, Vec2{60, 180}, Vec2{10, 180}}, {0.5, 5}), 0);
+}
+
+TEST(BodyLengths, AreLearntWithinFifteenPercentOfAnAdults) {
+  Lengths lengths;
+  const double adult = lengths[Bone::kUpperArm];
+  const double doubt = lengths.sigma_m(Bone::kUpperArm);
+  for (int i = 0; i < 100; ++i) lengths.learn(Bone::kUpperArm, adult * (i % 2 ? 1.09 : 1.11), 1);
+  // The weighted median of 100 samples, beside six of the prior.
+  EXPECT_NEAR(lengths[Bone::kUpperArm], adult * (100 * 1.10 + 6) / 106, 0.012 * adult);
+  EXPECT_LT(lengths.sigma_m(Bone::kUpperArm), doubt / 3);
+  for (int i = 0; i < 300; ++i) lengths.learn(Bone::kUpperArm, 1.29 * adult, 1);
+  EXPECT_NEAR(lengths[Bone::kUpperArm], 1.15 * adult, 1e-9);
+  lengths.learn(Bone::kThigh, 3, 1);  // nobody's
+  EXPECT_EQ(lengths[Bone::kThigh], Lengths()[Bone::kThigh]);
+}
+
+TEST(BodyEquations, TwoPointsAtADistanceByHand) {
+  // Point 0 is at 0 and held there with sigma 1; point 1 at 3 on x, held with sigma 1; the distance should be 1 with sigma 1/2.
+  // x0² + (x1 - 3)² + 4 (x1 - x0 - 1)²: x0 = 8/9, x1 = 19/9.
+  PointEquations<2> e;
+  const auto hold = [&](std::size_t point, Vec3 off) {
+    e.add(off.x, std::array{Slope{point, {1, 0, 0}}});
+    e.add(off.y, std::array{Slope{point, {0, 1, 0}}});
+    e.add(off.z, std::array{Slope{point, {0, 0, 1}}});
+  };
+  hold(0, {});
+  hold(1, {});
+  e.add(2 * (3 - 1), std::array{Slope{1, {2, 0, 0}}, Slope{0, {-2, 0, 0}}});
+  ASSERT_TRUE(e.factor());
+  const auto step = e.step();
+  EXPECT_NEAR(step[0].x, 8.0 / 9, 1e-12);
+  EXPECT_NEAR(step[1].x, -8.0 / 9, 1e-12);
+  EXPECT_NEAR(step[1].y, 0, 1e-12);
+  EXPECT_NEAR(e.covariance(0)[0], 5.0 / 9, 1e-12);  // of the inverse of (5 -4; -4 5)
+  EXPECT_NEAR(e.covariance(0)[3], 1, 1e-12);
+  e.clear();
+  EXPECT_FALSE(e.factor());  // nothing says where they are
+}
+
+SeenBody upright(Vec2 middle_px, double px_per_m) {
+  SeenBody body;
+  const auto put = [&](BodyPoint point, double x_m, double y_m) {
+    SeenPoint& p = body.points[static_cast<std::size_t>(point)];
+    p.x_q8 = static_cast<std::int32_t>(256 * (middle_px.x + px_per_m * x_m));
+    p.y_q8 = static_cast<std::int32_t>(256 * (middle_px.y + px_per_m * y_m));
+    p.world_q16 = {static_cast<std::int32_t>(65536 * x_m), static_cast<std::int32_t>(65536 * y_m), 0};
+    p.visible_q15 = 32768;
+  };
+  put(BodyPoint::kLeftShoulder, 0.2, -0.4);
+  put(BodyPoint::kRightShoulder, -0.2, -0.4);
+  put(BodyPoint::kLeftHip, 0.1, 0.1);
+  put(BodyPoint::kRightHip, -0.1, 0.1);
+  body.next = {0, 0, 256 * 128, 0};  // half a side of 128 px: 1 px of the crop is 1 px
+  return body;
+}
+
+TEST(BodyPoints, JointsLieBesideTheMarks) {
+  const Points points = points_of(upright({100, 100}, 100), BodyModel::kLite, {320, 240}, 100, 0.4);
+  // Down the trunk by 0.053 of 0.4 m at 100 px a metre, outwards by 0.033 of the 40 px between the shoulders.
+  EXPECT_NEAR(points[kLeftShoulder].at_px.y, 60 + 2.12, 0.01);
+  EXPECT_NEAR(points[kLeftShoulder].at_px.x, 120 + 1.32, 0.01);
+  EXPECT_NEAR(points[kRightShoulder].at_px.x, 80 - 1.32, 0.01);
+  EXPECT_NEAR(points[kLeftHip].at_px.y, 110 - 3.4, 0.01);
+  EXPECT_NEAR(points[kLeftShoulder].sigma_px, 1.5, 1e-9);
+  EXPECT_TRUE(points[kLeftShoulder].inside);
+}
+
+TEST(BodyPoints, AHandsNetworkMovesHandAndWristAndTheShiftStays) {
+  SeenHand hand;
+  hand.points[0].x_q8 = 256 * 50;
+  hand.points[9].x_q8 = 256 * 70;
+  Points points;
+  points[kLeftWrist].at_px = {48, 1};
+  points[kLeftHand].at_px = {60, 0};
+  const HandShift shift = take_hand(hand, true, points);
+  EXPECT_NEAR(points[kLeftHand].at_px.x, 63, 1e-9);  // 65 % of the way from 50 to 70
+  EXPECT_NEAR(points[kLeftWrist].at_px.x, 50, 1e-9);
+  EXPECT_NEAR(shift.palm.x, 3, 1e-9);
+  EXPECT_NEAR(shift.wrist.y, -1, 1e-9);
+  points[kLeftHand].at_px = {80, 0};
+  take_shift(shift, true, points);
+  EXPECT_NEAR(points[kLeftHand].at_px.x, 80 + 0.8 * 3, 1e-9);
+}
+
+TEST(BodyPoints, TheLineAcrossTurnsWithTheViewingRay) {
+  const SeenBody body = upright({100, 100}, 100);
+  const Across ahead = across_of(body, {0, 0, 2});
+  EXPECT_NEAR(ahead.shoulders.x, 1, 1e-9);
+  EXPECT_NEAR(ahead.shoulders.z, 0, 1e-9);
+  const Across beside = across_of(body, {2, 0, 2});  // 45 degrees to the right: who faces the camera there turns with it
+  EXPECT_NEAR(beside.hips.x, std::sqrt(0.5), 1e-9);
+  EXPECT_NEAR(beside.hips.z, -std::sqrt(0.5), 1e-9);
+}
+
+/// A person 2 m away who faces the camera, arms hanging a little apart.
+Places standing() {
+  Places p;
+  p[kHead] = {0, -0.71, 2};
+  for (const double side : {1.0, -1.0}) {
+    const bool left = side > 0;
+    const auto& arm = kArmChains[left ? 0 : 1];
+    const auto& leg = kLegChains[left ? 0 : 1];
+    p[arm[0]] = {side * 0.1725, -0.425, 2};
+    p[arm[1]] = {side * 0.22, -0.178, 2};
+    p[arm[2]] = {side * 0.25, 0.058, 2};
+    p[arm[3]] = {side * 0.255, 0.126, 2};
+    p[leg[0]] = {side * 0.105, 0.035, 2};
+    p[leg[1]] = {side * 0.11, 0.44, 2};
+    p[leg[2]] = {side * 0.115, 0.855, 2};
+    p[leg[3]] = {side * 0.14, 0.9, 1.85};
+  }
+  complete(p);
+  return p;
+}
+
+/// A scene in which every joint is seen on a surface of its own at its depth, and expected where it is.
+struct Standing {
+  Rectified geometry_ = geometry();
+  Image<std::uint16_t> d_q4 = Image<std::uint16_t>({320, 240});
+  Lengths lengths;
+  SurfaceMap map;
+  Scene scene;
+  explicit Standing(const Places& places, Vec3 across = {1, 0, 0}) {
+    scene.depth = {d_q4.view(), &geometry_};
+    scene.lengths = &lengths;
+    scene.map = &map;
+    scene.across = {across, across};
+    scene.trunk = trunk_axes(places);
+    scene.trunk_z_m = 2;
+    for (const JointId id : kFreeJoints) {
+      scene.points[id] = {geometry_.project(places[id]), 1.5, 1, true};
+      scene.expected[id] = {places[id], 0.03, 0};
+      double skin = places[id].z;
+      for (int i = 0; i < 4; ++i) skin = places[id].z - depth_of_joint_m(scene, id, skin);
+      put(id, {{skin, 1}});
+    }
+  }
+  void put(JointId id, std::initializer_list<Surface> surfaces) {
+    Surfaces& at = scene.surfaces[id];
+    at.count = surfaces.size();
+    std::copy(surfaces.begin(), surfaces.end(), at.all.begin());
+  }
+};
+
+TEST(BodyChoose, EveryJointStandsOnItsSurface) {
+  const Places places = standing();
+  Standing s(places);
+  Choices chosen;
+  choose(s.scene, chosen);
+  for (const JointId id : kFreeJoints) {
+    EXPECT_TRUE(chosen[id].on_surface) << name_of(id);
+    EXPECT_LT(distance(chosen[id].p, places[id]), 0.005) << name_of(id);
+  }
+}
+
+TEST(BodyChoose, TheSurfaceThatFitsTheBonesWinsOverTheMedian) {
+  const Places places = standing();
+  Standing s(places);
+  const double skin = s.scene.surfaces[kLeftElbow].all[0].z_m;
+  s.put(kLeftElbow, {{skin - 0.5, 0.55}, {skin, 0.25}, {skin + 0.4, 0.2}});
+  Choices chosen;
+  choose(s.scene, chosen);
+  EXPECT_TRUE(chosen[kLeftElbow].on_surface);
+  EXPECT_LT(distance(chosen[kLeftElbow].p, places[kLeftElbow]), 0.005);
+}
+
+TEST(BodyChoose, InProfileTheFarShoulderIsInferredBehindTheNearOne) {
+  // Turned by 90 degrees: the left side is near, and both shoulders are marked on it.
+  Places places = standing();
+  for (const JointId id : kFreeJoints) {
+    const Vec3 p = places[id];
+    places[id] = {p.z - 2, p.y, 2 - p.x};
+  }
+  Standing s(places, {0, 0, -1});
+  const double near_skin = s.scene.surfaces[kLeftShoulder].all[0].z_m;
+  s.put(kRightShoulder, {{near_skin, 1}});
+  for (const JointId id : {kLeftShoulder, kRightShoulder}) s.scene.expected[id].hidden = 10;
+  Choices chosen;
+  choose(s.scene, chosen);
+  EXPECT_TRUE(chosen[kLeftShoulder].on_surface);
+  EXPECT_FALSE(chosen[kRightShoulder].on_surface);
+  EXPECT_NEAR(chosen[kRightShoulder].p.z - chosen[kLeftShoulder].p.z, s.lengths[Bone::kShoulders], 0.03);
+}
+
+TEST(BodyChoose, NoSurfaceCarriesTwoKnees) {
+  // Legs crossed: both knees are marked at one place, and its surface is the left one's.
+  Places places = standing();
+  places[kLeftKnee] = {0, 0.44, 1.95};
+  places[kRightKnee] = {0, 0.44, 2.1};
+  Standing s(places);
+  s.put(kRightKnee, {s.scene.surfaces[kLeftKnee].all[0]});
+  Choices chosen;
+  choose(s.scene, chosen);
+  EXPECT_TRUE(chosen[kLeftKnee].on_surface);
+  EXPECT_FALSE(chosen[kRightKnee].on_surface);
+}
+
+TEST(BodyChoose, AHandBehindTheBackIsNotOnTheBelly) {
+  Places places = standing();
+  places[kLeftElbow] = {0.26, -0.2, 2.08};
+  places[kLeftWrist] = {0.05, -0.17, 2.2};
+  places[kLeftHand] = {-0.01, -0.15, 2.2};
+  Standing s(places);
+  const Vec3 belly = {0, -0.17, 2 - 0.33 * s.lengths[Bone::kShoulders]};
+  const double above = *s.map.height_m(s.scene.trunk, belly, s.lengths[Bone::kShoulders]);
+  for (const JointId id : {kLeftWrist, kLeftHand}) s.put(id, {{2 - above, 1}});
+  s.scene.hands[0] = HandSight::kAbsent;
+  Choices chosen;
+  choose(s.scene, chosen);
+  EXPECT_FALSE(chosen[kLeftHand].on_surface);
+  EXPECT_FALSE(chosen[kLeftWrist].on_surface);
+  EXPECT_GT(chosen[kLeftHand].p.z, 2.08);
+  // The same surface 12 cm before the belly is the hand.
+  for (const JointId id : {kLeftElbow, kLeftWrist, kLeftHand}) s.scene.expected[id] = {places[id] - Vec3{0, 0, 0.35}, 0.1, 0};
+  s.put(kLeftElbow, {{1.85, 1}});
+  for (const JointId id : {kLeftWrist, kLeftHand}) s.put(id, {{2 - above - 0.12, 1}});
+  s.scene.hands[0] = HandSight::kSeen;
+  choose(s.scene, chosen);
+  EXPECT_TRUE(chosen[kLeftHand].on_surface);
+}
+
+TEST(BodyFit, PointsAndDepthGiveTheBodyBack) {
+  const Places places = standing();
+  Standing s(places);
+  Choices chosen;
+  choose(s.scene, chosen);
+  Fitted fitted;
+  Fit().run(s.scene, chosen, {}, fitted);
+  for (const JointId id : kFreeJoints) {
+    EXPECT_LT(distance(fitted.places[id], places[id]), 0.015) << name_of(id);
+    EXPECT_GT(fitted.covariance[id].sigma_m(), 0.005) << name_of(id);
+    EXPECT_LT(fitted.covariance[id].sigma_m(), 0.06) << name_of(id);
+  }
+}
+
+TEST(BodyFit, BonesHoldAHiddenJoint) {
+  const Places places = standing();
+  Standing s(places);
+  Choices chosen;
+  choose(s.scene, chosen);
+  chosen[kRightElbow] = {places[kRightElbow] + Vec3{0, 0, 0.1}, false, 0};
+  s.scene.expected[kRightElbow] = {places[kRightElbow] + Vec3{0, 0, 0.1}, 0.2, 5};
+  Fitted fitted;
+  Fit().run(s.scene, chosen, {}, fitted);
+  const double upper = distance(fitted.places[kRightShoulder], fitted.places[kRightElbow]);
+  EXPECT_NEAR(upper, s.lengths[Bone::kUpperArm], 0.03);
+  EXPECT_GT(fitted.covariance[kRightElbow].sigma_m(), fitted.covariance[kLeftElbow].sigma_m());
+}
+
+TEST(BodyFit, BonesGetTheirLengthsAndKeepTheirDirections) {
+  const Places places = standing();
+  const Lengths lengths(0.9);
+  const Places out = with_lengths(places, lengths);
+  EXPECT_NEAR(distance(out[kLeftShoulder], out[kRightShoulder]), lengths[Bone::kShoulders], 1e-12);
+  EXPECT_NEAR(out[kLeftShoulder].x, 0.9 * 0.1725, 1e-12);  // the middle stays at 0
+  EXPECT_NEAR(distance(out[kRightElbow], out[kRightWrist]), lengths[Bone::kForearm], 1e-12);
+  EXPECT_NEAR(distance(out[kLeftAnkle], out[kLeftFoot]), lengths[Bone::kFoot], 1e-12);
+  const Vec3 was = places[kRightWrist] - places[kRightElbow], is = out[kRightWrist] - out[kRightElbow];
+  EXPECT_NEAR(norm(cross(normalized(was), normalized(is))), 0, 1e-12);
+}
+
+TEST(BodySurfaceMap, HeightsGoAlongWithTheTrunk) {
+  const Places places = standing();
+  const TrunkAxes axes = trunk_axes(places);
+  EXPECT_NEAR(axes.front.z, -1, 1e-9);
+  SurfaceMap map;
+  const Vec3 on_plane = axes.shoulders + 0.2 * axes.down;
+  const double before = *map.height_m(axes, on_plane, 0.345);
+  EXPECT_GT(before, 0.06);
+  EXPECT_FALSE(map.height_m(axes, on_plane + Vec3{0.5, 0, 0}, 0.345));
+  Map depth;
+  depth.fill({0, 0, 320, 240}, 1.95);  // a flat chest
+  for (int i = 0; i < 20; ++i) map.learn(depth.view(), axes, places);
+  EXPECT_NEAR(*map.height_m(axes, on_plane, 0.345), 0.05, 0.01);
+  // Another place: the map goes with the person.
+  Places moved = places;
+  for (const JointId id : kFreeJoints) moved[id] = moved[id] + Vec3{0.3, 0, 0.5};
+  EXPECT_NEAR(*map.height_m(trunk_axes(moved), on_plane + Vec3{0.3, 0, 0.5}, 0.345), 0.05, 0.01);
+}
+
+TEST(BodyLimbs, CutsFindTheMiddleAndTheDepthOfAForearm) {
+  Places places = standing();
+  Standing s(places);
+  Map map;
+  // The left forearm goes down from 204 px to 210; a band of 16 px, whose middle lies 2 px to the right of it.
+  const Vec2 elbow = s.scene.points[kLeftElbow].at_px, wrist = s.scene.points[kLeftWrist].at_px;
+  const double behind = (depth_of_joint_m(s.scene, kLeftElbow, 2) + depth_of_joint_m(s.scene, kLeftWrist, 2)) / 2;
+  for (int y = 0; y < 240; ++y) {
+    const double middle = elbow.x + (y - elbow.y) / (wrist.y - elbow.y) * (wrist.x - elbow.x) + 2;
+    map.fill({static_cast<int>(std::lround(middle)) - 8, y, 16, 1}, 2 - behind);
+  }
+  s.scene.depth = map.view();
+  Choices chosen;
+  for (const JointId id : {kLeftElbow, kLeftWrist}) chosen[id] = {places[id], true, 0.02};
+  LimbSamples samples;
+  sample_limbs(s.scene, chosen, samples);
+  ASSERT_EQ(samples.count, 4u);
+  for (const LimbSample& sample : samples.get()) {
+    EXPECT_NEAR(sample.z_m, 2, 0.02);
+    ASSERT_TRUE(sample.has_edges);
+    const double at_y = elbow.x + sample.share * (wrist.x - elbow.x);
+    EXPECT_NEAR(sample.middle_px.x - at_y, 2, 1.1);
+  }
+}
+
+}  // namespace
+}  // namespace duo::body

@@ -1,0 +1,219 @@
+// The body tracker on whole frames: made-up scenes without a person, a rendered one with.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+#include "duoptic/engine.h"
+#include "duoptic/synthetic.h"
+#include "duoptic/tracker.h"
+#include "tests/allocations.h"
+#include "trackers/body/body_tracker.h"
+
+namespace duo {
+namespace {
+
+constexpr int kFrames = 10;
+
+/// Frames of a rendered person, made once for all tests.
+struct RenderedPerson {
+  Rig rig;
+  Rectified rectified;
+  std::vector<std::shared_ptr<const Frame>> frames;
+  std::vector<std::vector<SyntheticJoint>> joints;
+
+  static const RenderedPerson& get() {
+    static const RenderedPerson person;
+    return person;
+  }
+
+ private:
+  RenderedPerson() {
+    auto clip = SyntheticClip::open({.size = {320, 240}, .seed = 5, .script = "wave", .frames = kFrames}, 2);
+    EXPECT_TRUE(clip) << (clip ? "" : clip.error().what);
+    auto engine = make_engine("simd", 2);
+    rig = clip->rig();
+    Setup setup;
+    setup.size = {320, 240};
+    setup.rig = rig;
+    setup.max_disparity = 64;
+    setup.wants.color = true;
+    const auto prepared = (*engine)->prepare(setup);
+    EXPECT_TRUE(prepared) << (prepared ? "" : prepared.error().what);
+    rectified = *(*engine)->rectified();
+    for (int i = 0; i < kFrames; ++i) {
+      SyntheticClipFrame frame = clip->frame(i);
+      (*engine)->submit(frame.pair);
+      frames.push_back((*engine)->collect());
+      joints.push_back(std::move(frame.joints));
+    }
+  }
+};
+
+std::unique_ptr<Tracker> body_tracker(const Rig& rig, const Rectified& rectified, int threads) {
+  auto tracker = make_body_tracker();
+  const auto prepared = tracker->prepare({.rig = rig, .rectified = rectified, .threads = threads});
+  EXPECT_TRUE(prepared) << (prepared ? "" : prepared.error().what);
+  return tracker;
+}
+
+Frame copy_of(const Frame& frame) {
+  Frame out;
+  out.color = frame.color.clone();
+  out.disparity.d_q4 = frame.disparity.d_q4.clone();
+  return out;
+}
+
+std::string bytes_of(std::span<const Person> people) {
+  std::string out;
+  for (const Person& person : people)
+    for (std::size_t j = 0; j < person.count(); ++j) {
+      const Joint& joint = person.joints[j];
+      for (const double value : {joint.p_in_rig_m.x, joint.p_in_rig_m.y, joint.p_in_rig_m.z, joint.cov_m2.xx, joint.cov_m2.zz,
+                                 joint.u_px, joint.v_px, joint.confidence, static_cast<double>(joint.state)})
+        out.append(reinterpret_cast<const char*>(&value), sizeof(value));
+    }
+  return out;
+}
+
+TEST(BodyTracker, FindsARenderedPersonByItself) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 2);
+  EXPECT_TRUE(tracker->starts_by_itself());
+  EXPECT_FALSE(tracker->select(*person.frames[0], {}));
+  double worst_m = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    const auto people = tracker->track(*person.frames[static_cast<std::size_t>(i)]);
+    ASSERT_EQ(people.size(), 1u) << i;
+    EXPECT_EQ(people[0].id, 1u);
+    EXPECT_EQ(people[0].skeleton, &kBody);
+    if (i < kFrames / 2) continue;
+    for (const SyntheticJoint& truth : person.joints[static_cast<std::size_t>(i)]) {
+      const Joint* joint = people[0].find(truth.id);
+      ASSERT_NE(joint, nullptr);
+      if (!truth.visible_left || !truth.visible_right) continue;
+      const double off_m = norm(joint->p_in_rig_m - person.rectified.rig_from_left * truth.p_in_left_m);
+      worst_m = std::max(worst_m, off_m);
+      EXPECT_LT(off_m, 0.16) << name_of(truth.id) << " in frame " << i;
+    }
+  }
+  EXPECT_GT(worst_m, 0);
+}
+
+TEST(BodyTracker, OneAndTwoThreadsGiveTheSameBits) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto one = body_tracker(person.rig, person.rectified, 1), two = body_tracker(person.rig, person.rectified, 2);
+  for (const auto& frame : person.frames) {
+    const std::string want = bytes_of(one->track(*frame));
+    EXPECT_FALSE(want.empty());
+    EXPECT_EQ(bytes_of(two->track(*frame)), want);
+  }
+  // And again from the start.
+  one->reset();
+  two->reset();
+  EXPECT_EQ(bytes_of(one->track(*person.frames[0])), bytes_of(two->track(*person.frames[0])));
+}
+
+TEST(BodyTracker, AllocatesNothingOnceAPersonIsTracked) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  for (const auto& frame : person.frames) tracker->track(*frame);
+  const long before = test::allocations;
+  for (const auto& frame : person.frames) tracker->track(*frame);
+  EXPECT_EQ(test::allocations - before, 0);
+}
+
+TEST(BodyTracker, APersonWithoutDepthIsNoPerson) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  Frame frame;
+  frame.color = person.frames[0]->color.clone();
+  frame.disparity.d_q4 = Image<std::uint16_t>(frame.color.size());
+  for (int y = 0; y < frame.color.height(); ++y)
+    for (int x = 0; x < frame.color.width(); ++x) frame.disparity.d_q4.at(y, x) = Disparity::kNone;
+  EXPECT_TRUE(tracker->track(frame).empty());
+}
+
+TEST(BodyTracker, APosterOfAPersonIsNoPerson) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  for (int i = 0; i < 6; ++i) {
+    Frame frame = copy_of(*person.frames[0]);
+    for (int y = 0; y < frame.color.height(); ++y)
+      for (int x = 0; x < frame.color.width(); ++x)
+        frame.disparity.d_q4.at(y, x) = static_cast<std::uint16_t>(16 * 20 + x / 8 + (x * 7 + y * 3) % 3);  // a wall at a slant
+    EXPECT_TRUE(tracker->track(frame).empty()) << i;
+  }
+}
+
+TEST(BodyTracker, OfHalfAPersonTheOtherHalfIsNotSeen) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  for (int i = 0; i < kFrames; ++i) {
+    Frame frame = copy_of(*person.frames[static_cast<std::size_t>(i)]);
+    const int cut = frame.color.width() / 2;  // about through the person's middle
+    for (int y = 0; y < frame.color.height(); ++y)
+      for (int x = cut; x < frame.color.width(); ++x) {
+        frame.color.at(y, x) = {90, 90, 90};
+        frame.disparity.d_q4.at(y, x) = Disparity::kNone;
+      }
+    for (const Person& found : tracker->track(frame))
+      for (std::size_t j = 0; j < found.count(); ++j)
+        if (found.joints[j].state == JointState::kSeen) {
+          EXPECT_LT(person.rectified.project(found.joints[j].p_in_rig_m).x, cut + 20) << name_of(kBody.joints[j].id);
+        }
+  }
+}
+
+TEST(BodyTracker, ManySmallPeopleNeitherCrashNorExceedEight) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  for (int i = 0; i < 4; ++i) {
+    const Frame& source = *person.frames[static_cast<std::size_t>(i)];
+    Frame frame = copy_of(source);
+    const int width = frame.color.width(), height = frame.color.height();
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {  // five by four of them
+        const int from_x = x * 5 % width, from_y = y * 4 % height;
+        frame.color.at(y, x) = source.color.at(from_y, from_x);
+        frame.disparity.d_q4.at(y, x) = source.disparity.d_q4.at(from_y, from_x);
+      }
+    EXPECT_LE(tracker->track(frame).size(), 8u);
+  }
+}
+
+TEST(BodyTracker, AfterALossThePersonKeepsItsNumber) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  for (int i = 0; i < 5; ++i) tracker->track(*person.frames[static_cast<std::size_t>(i)]);
+  Frame dark = copy_of(*person.frames[5]);
+  for (int y = 0; y < dark.color.height(); ++y)
+    for (int x = 0; x < dark.color.width(); ++x) dark.color.at(y, x) = {};
+  for (int i = 0; i < 6; ++i)
+    for (const Person& hidden : tracker->track(dark)) EXPECT_EQ(hidden.presence, Presence::kHidden);
+  const auto again = tracker->track(*person.frames[6]);
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_EQ(again[0].id, 1u);
+  EXPECT_EQ(tracker->track(*person.frames[7])[0].presence, Presence::kSeen);
+}
+
+TEST(BodyTracker, NobodyIsInAnEmptyRoom) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  Frame frame;
+  frame.color = Image<Rgb8>(person.rectified.size);
+  frame.disparity.d_q4 = Image<std::uint16_t>(frame.color.size());
+  std::mt19937 random(3);
+  for (int i = 0; i < 3; ++i) {
+    for (int y = 0; y < frame.color.height(); ++y)
+      for (int x = 0; x < frame.color.width(); ++x) {
+        const auto gray = static_cast<std::uint8_t>(120 + random() % 16);
+        frame.color.at(y, x) = {gray, gray, gray};
+        frame.disparity.d_q4.at(y, x) = 320;
+      }
+    EXPECT_TRUE(tracker->track(frame).empty()) << i;
+  }
+}
+
+}  // namespace
+}  // namespace duo

@@ -1,0 +1,41 @@
+// How long a person's bones are: learnt from what is seen, both sides alike.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "trackers/body/joints.h"
+
+namespace duo::body {
+
+enum class Bone : std::uint8_t { kShoulders, kHips, kTrunk, kUpperArm, kForearm, kPalm, kThigh, kShin, kFoot, kNeckHead };
+inline constexpr std::size_t kBones = 10;
+
+/// Lengths of one person.
+///
+/// Units  metres; trunk: between the middles of shoulders and hips; palm: from the wrist to its centre; neck_head: from the
+///        shoulders' middle to the head's centre
+class Lengths {
+ public:
+  Lengths();
+  /// Of an adult of another size.
+  explicit Lengths(double scale);
+
+  double operator[](Bone bone) const { return length_m_[static_cast<std::size_t>(bone)]; }
+  /// How well it is known: one standard deviation.
+  double sigma_m(Bone bone) const;
+  /// One measurement with a weight of 0 .. 1.
+  void learn(Bone bone, double measured_m, double weight);
+
+ private:
+  static constexpr std::size_t kMostSamples = 256;
+  struct Samples {
+    std::array<float, kMostSamples> length_m = {}, weight = {};
+    std::size_t count = 0, next = 0;
+    double total = 0;
+  };
+  std::array<double, kBones> prior_m_, length_m_;
+  std::array<Samples, kBones> samples_ = {};
+};
+
+}  // namespace duo::body

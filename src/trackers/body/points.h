@@ -1,0 +1,51 @@
+// Where the joints are in the picture, by the detector's points.
+#pragma once
+
+#include "duoptic/detector.h"
+#include "duoptic/image.h"
+#include "trackers/body/joints.h"
+
+namespace duo::body {
+
+/// A joint's centre as the network sees it.
+///
+/// Units  pixels of the rectified left picture; sigma_px: one standard deviation along each axis; visibility 0 .. 1
+struct Point {
+  Vec2 at_px;
+  double sigma_px = 0;
+  double visibility = 0;
+  bool inside = false;  // in the picture
+};
+using Points = PerJoint<Point>;
+
+/// Points of the joints' centres. The network marks the body's outline as people see it: hips where the thigh bends, shoulders
+/// on the bone that shows. Joint centres, as skeletons have them, lie beside, in widths of the
+/// shoulders.
+///
+/// Shape   pelvis, spine, chest and neck have none
+/// Source  the offsets: means over pictures of four rendered people whose joints are those of their skeleton
+Points points_of(const SeenBody& body, BodyModel model, Size picture, double px_per_m, double shoulder_width_m);
+
+/// How far the hand's network moved hand and wrist from where the body's network has them.
+///
+/// Units  px of the picture
+struct HandShift {
+  Vec2 palm, wrist;
+};
+
+/// Puts hand and wrist where the hand's network sees them: the centre of the palm lies 65 % of the way from the wrist to the
+/// middle knuckle.
+HandShift take_hand(const SeenHand& hand, bool left, Points& points);
+/// The same by the shift of the frame before.
+void take_shift(const HandShift& shift, bool left, Points& points);
+
+/// Directions from the right shoulder or hip to the left one, as the network imagines them in space.
+///
+/// Units  length 1, rig frame
+struct Across {
+  Vec3 shoulders, hips;
+};
+/// `ray`: the viewing ray of the body, along which the network takes itself to look.
+Across across_of(const SeenBody& body, Vec3 ray);
+
+}  // namespace duo::body

@@ -1,0 +1,46 @@
+// All that a frame and the frames before say of one person, before joints are chosen.
+#pragma once
+
+#include "trackers/body/lengths.h"
+#include "trackers/body/lift.h"
+#include "trackers/body/points.h"
+#include "trackers/body/surface_map.h"
+
+namespace duo::body {
+
+/// Where a joint is expected.
+struct Expected {
+  Vec3 p;
+  double sigma_m = 0.1;
+  int hidden = 0;  // frames since it was seen
+};
+
+/// What the network of hands said in this frame or, where the other hand was asked, in the one before; outside: the hand would
+/// be beyond the picture's border.
+enum class HandSight : std::uint8_t { kNotAsked, kSeen, kAbsent, kOutside };
+
+struct Scene {
+  DepthView depth;
+  Points points;
+  PerJoint<Surfaces> surfaces;
+  PerJoint<Expected> expected;
+  Across across;                        // by the network
+  std::array<HandSight, 2> hands = {};  // left, right
+  const Lengths* lengths = nullptr;
+  const SurfaceMap* map = nullptr;
+  TrunkAxes trunk;  // as expected; chosen anew with the shoulders and hips
+  double trunk_z_m = 0;
+
+  double width_m() const { return (*lengths)[Bone::kShoulders]; }
+};
+
+/// From the skin to the joint along the view. `away`: how far the joint's side of the trunk looks away from the camera, -1
+/// .. 1.
+double depth_of_joint_m(JointId id, double width_m, double away);
+/// The same for a joint of this scene, by the network's line across the trunk.
+double depth_of_joint_m(const Scene& scene, JointId id, double skin_z_m);
+
+/// Half the window that depth is read in.
+double half_window_m(JointId id);
+
+}  // namespace duo::body
