@@ -41,25 +41,30 @@ std::optional<Board> charuco_of(const std::vector<Marker>& markers, Board board)
     for (const Marker& marker : placed) last = std::max(last, marker.id);
     board.rows = std::max(kLeastSquares, row_of_marker(last, columns) + 1);
     best = board;
+    if (placed.size() * 10 >= markers.size() * 9) break;
   }
   return best;
 }
 
+/// Of the dictionary of which most markers are read: those of another are read by chance, and few.
 std::optional<Board> charuco_in(const cv::Mat& gray, const Board& named) {
+  Board board = {.kind = Board::Kind::kCharuco, .square_m = named.square_m};
+  std::vector<Marker> most;
   for (const int bits : {4, 5, 6}) {
-    const std::vector<Marker> markers = read_markers(gray, bits, kMarkers);
-    if (markers.size() < kLeastMarkers) continue;
-    Board board = {.kind = Board::Kind::kCharuco, .square_m = named.square_m, .marker_bits = bits};
-    if (const auto found = charuco_of(markers, board)) return found;
+    std::vector<Marker> markers = read_markers(gray, bits, kMarkers);
+    if (markers.size() <= most.size()) continue;
+    most = std::move(markers);
+    board.marker_bits = bits;
   }
-  return {};
+  return most.size() < kLeastMarkers ? std::nullopt : charuco_of(most, board);
 }
 
-/// Inner corners, columns before rows and the larger number first: half a turn and a quarter are the same board.
-std::optional<Board> chessboard_in(const cv::Mat& gray, const Board& named) {
+/// Inner corners, the larger number first: half a turn and a quarter are the same board.
+std::optional<Board> chessboard_in(const cv::Mat& gray, const Board& named, int flags) {
   std::vector<cv::Point2f> corners;
   cv::Mat seen;
-  if (!cv::findChessboardCornersSB(gray, {kLeastSquares, kLeastSquares}, corners, cv::CALIB_CB_LARGER, seen) || seen.empty())
+  if (!cv::findChessboardCornersSB(gray, {kLeastSquares, kLeastSquares}, corners, cv::CALIB_CB_LARGER | flags, seen) ||
+      seen.empty())
     return {};
   return Board{.kind = Board::Kind::kChessboard,
                .columns = std::max(seen.cols, seen.rows) + 1,
@@ -81,6 +86,7 @@ bool is_found(const Board& board, const cv::Mat& left, const cv::Mat& right) {
 
 /// At first of small pictures: that is quick, and finds what is large.
 cv::Mat shrunk(const cv::Mat& gray, int width) {
+  if (gray.cols <= width) return gray;
   cv::Mat out;
   cv::resize(gray, out, {}, static_cast<double>(width) / gray.cols, static_cast<double>(width) / gray.cols, cv::INTER_AREA);
   return out;
@@ -99,12 +105,18 @@ std::optional<Board> recognise_board(const cv::Mat& left, const cv::Mat& right, 
       a->rows = b->rows = std::max(a->rows, b->rows);
       return works(a, b) ? a : std::nullopt;
     }
-    for (const int width : {kSmall_px, left.cols}) {
-      if (width > left.cols || (width == kSmall_px && left.cols == kSmall_px)) continue;
-      const bool whole = width == left.cols;
-      a = chessboard_in(whole ? left : shrunk(left, width), named);
-      b = chessboard_in(whole ? right : shrunk(right, width), named);
-      if (works(a, b)) return a;
+    for (const int width : {std::min(kSmall_px, left.cols), left.cols}) {
+      const cv::Mat small_left = shrunk(left, width), small_right = shrunk(right, width);
+      std::optional<Board> largest;  // now and then a part of the board is taken for all of it
+      for (const int flags : {static_cast<int>(cv::CALIB_CB_EXHAUSTIVE), 0, static_cast<int>(cv::CALIB_CB_NORMALIZE_IMAGE)}) {
+        a = chessboard_in(small_left, named, flags);
+        b = chessboard_in(small_right, named, flags);
+        if (works(a, b)) return a;
+        for (const auto& seen : {a, b})
+          if (seen && (!largest || seen->corners() > largest->corners())) largest = seen;
+      }
+      if (works(largest, largest)) return largest;
+      if (width == left.cols) break;
     }
   } catch (const cv::Exception&) {  // a picture that OpenCV cannot take has no board
   }
