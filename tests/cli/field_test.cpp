@@ -1,9 +1,11 @@
 // What people bring, as they reported it in public, rebuilt as small inputs: each through the tool, from outside.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
+#include "duoptic/rig.h"
 #include "duoptic/sink.h"
 #include "tests/data.h"
 #include "tool.h"
@@ -144,6 +146,54 @@ TEST_F(Field, VideosHeldUpright) {
   const Ended ended = depth(at("left.mp4") + " " + at("right.mp4"));
   EXPECT_GT(ended.json().value("height", 0), ended.json().value("width", 0));
   expect_video(ended, 8);
+}
+
+// --- Rigs -----------------------------------------------------------------------------------------------------------------
+
+/// A rig file, or two, as `rig import` takes them.
+Result<Rig> imported(const test::TempFolder& folder, const std::string& files) {
+  const Ended ended = test::run_tool(folder / "", "rig import " + files + " -o rig.json");
+  EXPECT_EQ(ended.exit, 0) << ended.err;
+  return load_rig(folder / "rig.json");
+}
+
+TEST_F(Field, OpencvsTwoFilesAreOneRig) {
+  if (!open("opencv_two_files")) GTEST_SKIP() << "skipped: no data";
+  const auto rig = imported(folder_, at("intrinsics.yml") + " " + at("extrinsics.yml"));
+  ASSERT_TRUE(rig);
+  EXPECT_NEAR(rig->baseline_m(), 0.12, 1e-3);
+  EXPECT_EQ(rig->left.size, (Size{640, 480}));
+}
+
+TEST_F(Field, FourteenCoefficientsWhoseLastAreZero) {
+  if (!open("opencv_14_coefficients")) GTEST_SKIP() << "skipped: no data";
+  const auto rig = imported(folder_, at("rig.yml"));
+  ASSERT_TRUE(rig);
+  EXPECT_NE(rig->left.distortion[0], 0);
+}
+
+TEST_F(Field, AFisheyeLensIsNotTakenForAnother) {
+  if (!open("fisheye_said")) GTEST_SKIP() << "skipped: no data";
+  const Ended ended = run("rig import " + at("rig.yml") + " -o rig.json");
+  EXPECT_EQ(ended.exit, kInput);
+  expect_line(ended, "fisheye");
+}
+
+TEST_F(Field, RosFilesThatDriversLeftEmpty) {
+  if (!open("ros_unfilled")) GTEST_SKIP() << "skipped: no data";
+  for (const std::string name : {"r0", "nod"}) {
+    const auto rig = imported(folder_, at(name + "_left.yaml") + " " + at(name + "_right.yaml"));
+    ASSERT_TRUE(rig) << name;
+    EXPECT_NEAR(rig->baseline_m(), 0.1, 1e-3);
+  }
+}
+
+TEST_F(Field, NearIsAFiniteDistance) {
+  for (const char* value : {"0", "-1", "0,5", "nan"}) {
+    const Ended ended = run("depth a.png b.png --near " + std::string(value));
+    EXPECT_EQ(ended.exit, test::kUsage) << value;
+    EXPECT_LT(ended.err.size(), 300U) << ended.err;
+  }
 }
 
 }  // namespace
