@@ -6,6 +6,7 @@ namespace duo::body {
 namespace {
 
 constexpr double kNear_m = 0.25, kFar_m = 15;
+constexpr double kSeenDrift = 0.9, kHiddenDrift = 0.6;  // share of its step that a joint keeps
 constexpr double kReachBefore_m = 0.95, kReachBehind_m = 0.6;
 
 std::array<Vec2, 4> corners_of(const SeenBody& seen) {
@@ -152,11 +153,11 @@ void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hand
   sample_limbs(scene, chosen, samples_);
   fit_.run(scene, chosen, samples_, fitted_);
   update(frame, scene, chosen);
-  learn(scene, chosen);
+  learn(scene);
 }
 
 void Body::predict(Scene& scene, double frame_s) const {
-  constexpr double kSeenDrift = 0.9, kHiddenDrift = 0.6, kMostSigma_m = 0.3, kAstray = 2;
+  constexpr double kMostSigma_m = 0.3, kAstray = 2;
   for (const JointId id : kFreeJoints) {
     const State& state = states_[id];
     Expected& expected = scene.expected[id];
@@ -220,7 +221,7 @@ void Body::lift(Scene& scene) const {
 }
 
 void Body::update(const FrameView& frame, const Scene& scene, const Choices& chosen) {
-  constexpr double kStepGain = 0.5, kFar_off_m = 0.12, kFar_off_px = 6, kTooFar_m = 0.15;
+  constexpr double kStepGain = 0.5, kLongestStep_m = 0.2, kFar_off_m = 0.12, kFar_off_px = 6, kTooFar_m = 0.15;
   missed_ = 0;
   ++age_;
   for (const JointId id : kFreeJoints) {
@@ -236,15 +237,14 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     state.seen_before = state.seen;
     state.hidden = state.seen ? 0 : state.hidden + 1;
     const Vec3 off = p - scene.expected[id].p;
-    const double drift = state.seen ? 0.9 : 0.6;
+    const double drift = state.seen ? kSeenDrift : kHiddenDrift;
     state.step = was_hidden && state.seen ? Vec3{} : drift * state.step + kStepGain * off;
-    const double longest = 0.2, now = norm(state.step);
-    if (now > longest) state.step = (longest / now) * state.step;
-    state.sigma_m = std::sqrt(fitted_.covariance[id].sigma_m() * fitted_.covariance[id].sigma_m() / 3);
+    if (const double now = norm(state.step); now > kLongestStep_m) state.step = (kLongestStep_m / now) * state.step;
+    state.sigma_m = fitted_.covariance[id].sigma_m() / std::sqrt(3.0);  // along each axis
   }
 }
 
-void Body::learn(const Scene& scene, const Choices& chosen) {
+void Body::learn(const Scene& scene) {
   using enum JointId;
   constexpr double kFacing = 0.7;  // of the width: turned by less than 45 degrees
   const auto seen = [&](JointId id) { return states_[id].seen; };
@@ -254,9 +254,9 @@ void Body::learn(const Scene& scene, const Choices& chosen) {
   const auto take = [&](JointId a, JointId b, Bone bone) {
     if (!seen(a) || !seen(b)) return;
     const Vec3 way = measured(b) - measured(a);
-    const double long_ = std::max(norm(way), 1e-6), across = std::sqrt(square(way.x) + square(way.y)) / long_;
+    const double measured_m = std::max(norm(way), 1e-6), across = std::sqrt(square(way.x) + square(way.y)) / measured_m;
     const double weight = square(across) * std::min(scene.points[a].visibility, scene.points[b].visibility);
-    if (across > 0.5) lengths_.learn(bone, long_, weight);
+    if (across > 0.5) lengths_.learn(bone, measured_m, weight);
   };
   for (const Limb& arm : kArmChains) {
     take(arm[0], arm[1], Bone::kUpperArm);
@@ -277,15 +277,13 @@ void Body::learn(const Scene& scene, const Choices& chosen) {
     if (seen(kHead)) lengths_.learn(Bone::kNeckHead, distance(shoulders, measured(kHead)), 1);
     if (std::abs(scene.across.shoulders.z) < kFacing) map_.learn(scene.depth, trunk_axes(fitted_.places), fitted_.places);
   }
-  (void)chosen;
 }
 
-void Body::miss(const FrameView&) {
-  constexpr double kDrift = 0.6;
+void Body::miss() {
   ++missed_;
   for (const JointId id : kFreeJoints) {
     State& state = states_[id];
-    state.step = kDrift * state.step;
+    state.step = kHiddenDrift * state.step;
     fitted_.places[id] = fitted_.places[id] + state.step;
     state.seen = state.sure = state.seen_before = false;
     ++state.hidden;

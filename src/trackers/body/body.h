@@ -42,7 +42,7 @@ class Body {
   };
   void track(const FrameView& frame, const SeenBody& seen, const Hands& hands);
   /// A frame in which nothing was seen of the person.
-  void miss(const FrameView& frame);
+  void miss();
 
   const Places& places() const { return fitted_.places; }
   const Lengths& lengths() const { return lengths_; }
@@ -64,7 +64,7 @@ class Body {
   void detect_hand(const FrameView& frame, const SeenHand* hand, bool left, Scene& scene);
   void lift(Scene& scene) const;
   void update(const FrameView& frame, const Scene& scene, const Choices& chosen);
-  void learn(const Scene& scene, const Choices& chosen);
+  void learn(const Scene& scene);
 
   Lengths lengths_;
   SurfaceMap map_;

@@ -175,7 +175,7 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
     owners_[i]->body.track(view, seen[i].body, hands);
   }
   for (Tracked& each : tracked_)
-    if (!each.matched) each.body.miss(view);
+    if (!each.matched) each.body.miss();
   constexpr int kForget = 75;  // frames
   std::erase_if(tracked_, [](const Tracked& each) { return each.body.missed() > kForget; });
   publish(view);
