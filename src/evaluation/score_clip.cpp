@@ -47,7 +47,10 @@ Result<Wanted> wanted(const Tracker& tracker, const ClipTruth& truth, std::vecto
     for (const Skeleton* skeleton : tracker.skeletons())
       if (tracker.starts_by_itself() || skeleton->joints[0].side == truth.arm) add(*skeleton, joints);
     if (tracker.starts_by_itself())  // whole bodies: the joints that the truth has
-      std::erase_if(joints, [&](JointId joint) { return !truth.check(joint); });
+      std::erase_if(joints, [&](JointId joint) {
+        return std::ranges::none_of(
+            truth.frames, [&](const FrameTruth& frame) { return frame[static_cast<std::size_t>(joint)].has_value(); });
+      });
   }
   Wanted out{std::move(joints), {}, {}};
   for (const JointId joint : out.joints) {
