@@ -303,14 +303,15 @@ void Panels::draw_region(const Cell& cell) {
   picture(cell, region_);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   float x = cell.caption.x;
-  const std::vector<JointId> joints = shaded_joints(header_);
-  for (const JointId joint : joints) {
-    const Rgb8 c = shade_of(joint);
-    const std::string name(part_of(joint));
-    list.AddRectFilled({x, cell.caption.y + 6 * scale_}, {x + 16 * scale_, cell.caption.y + 20 * scale_},
-                       IM_COL32(c.r, c.g, c.b, 255), 3 * scale_);
-    list.AddText({x + 22 * scale_, cell.caption.y + 5 * scale_}, kText, name.c_str());
-    x += std::min(40 * scale_ + ImGui::CalcTextSize(name.c_str()).x, cell.caption_width / static_cast<float>(joints.size()));
+  for (const ShadeKey& key : shade_keys(header_)) {
+    for (const JointId joint : key.joints) {
+      const Rgb8 c = shade_of(joint);
+      list.AddRectFilled({x, cell.caption.y + 6 * scale_}, {x + 16 * scale_, cell.caption.y + 20 * scale_},
+                         IM_COL32(c.r, c.g, c.b, 255), 3 * scale_);
+      x += 16 * scale_;
+    }
+    list.AddText({x + 6 * scale_, cell.caption.y + 5 * scale_}, kText, key.name.c_str());
+    x += 24 * scale_ + ImGui::CalcTextSize(key.name.c_str()).x;
   }
 }
 

@@ -113,6 +113,13 @@ std::vector<Label> labels_of(const Person& person, bool metric = true);
 /// The joints that captions explain the shades of: each part of the body once, of whichever side.
 std::vector<JointId> shaded_joints(const TrackHeader& header);
 
+/// One entry of a caption's key to the shades.
+struct ShadeKey {
+  std::string name;             // of a joint, or of a limb where a caption has no room for all joints: trunk, arm, leg
+  std::vector<JointId> joints;  // whose shades it explains
+};
+std::vector<ShadeKey> shade_keys(const TrackHeader& header);
+
 /// The thesis's four panels: the raw left picture with joints as green boxes and bones as red lines, both broken where a joint
 /// is inferred; depth in colours over `range`, with a legend in metres; the persons' pixels in a shade per joint; hue as
 /// colour with saturation as brightness. The same size for every frame of a recording, even in both directions.

@@ -137,12 +137,15 @@ void put_labels(View<Rgb8> dst, std::span<const Person> people, bool metric, con
 
 void put_shades(View<Rgb8> dst, const TrackHeader& header, const Layout& layout) {
   int x = layout.scaled(10);
-  for (const JointId joint : shaded_joints(header)) {
-    const Rgb8 c = shade_of(joint);
-    cv::rectangle(mat_of(dst), cv::Rect(x, layout.scaled(14), layout.scaled(18), layout.scaled(16)), cv::Scalar(c.r, c.g, c.b),
-                  cv::FILLED);
-    put_text(dst, std::string(part_of(joint)), {x + layout.scaled(26), layout.scaled(28)}, kText, layout);
-    x += layout.scaled(120);
+  for (const ShadeKey& key : shade_keys(header)) {
+    for (const JointId joint : key.joints) {
+      const Rgb8 c = shade_of(joint);
+      cv::rectangle(mat_of(dst), cv::Rect(x, layout.scaled(14), layout.scaled(18), layout.scaled(16)),
+                    cv::Scalar(c.r, c.g, c.b), cv::FILLED);
+      x += layout.scaled(18);
+    }
+    put_text(dst, key.name, {x + layout.scaled(8), layout.scaled(28)}, kText, layout);
+    x += layout.scaled(102);
   }
 }
 

@@ -67,6 +67,19 @@ TEST(Shapes, EachPartOfTheBodyHasAShadeOfItsOwn) {
       }
 }
 
+TEST(Shades, AreExplainedByLimbsWhereThereAreManyJoints) {
+  TrackHeader header;
+  const auto keys = [&] {
+    std::string text;
+    for (const ShadeKey& key : shade_keys(header)) text += key.name + " " + std::to_string(key.joints.size()) + ", ";
+    return text;
+  };
+  header.skeletons = {&kRightArm, &kLeftArm};
+  EXPECT_EQ(keys(), "shoulder 1, elbow 1, hand 1, ");
+  header.skeletons = {&kBody};
+  EXPECT_EQ(keys(), "trunk 5, arm 4, leg 4, ");
+}
+
 TEST(Panels, JointsAndBonesWhereTheyAre) {
   constexpr Size kSize = {320, 240};
   Moment moment(kSize);

@@ -68,4 +68,19 @@ std::vector<JointId> shaded_joints(const TrackHeader& header) {
   return out;
 }
 
+std::vector<ShadeKey> shade_keys(const TrackHeader& header) {
+  constexpr std::size_t kMostNames = 4;
+  const auto limb_of = [](JointId joint) {
+    return joint < JointId::kLeftShoulder ? "trunk" : joint < JointId::kLeftHip ? "arm" : "leg";
+  };
+  const std::vector<JointId> joints = shaded_joints(header);
+  std::vector<ShadeKey> out;
+  for (const JointId joint : joints) {
+    const std::string name(joints.size() > kMostNames ? limb_of(joint) : part_of(joint));
+    if (out.empty() || out.back().name != name) out.push_back({name, {}});
+    out.back().joints.push_back(joint);
+  }
+  return out;
+}
+
 }  // namespace duo
