@@ -183,8 +183,13 @@ Result<void> Pipeline::select(std::span<const Selection> selections) {
   State& s = *state_;
   DUO_CHECK(s.tracker != nullptr && s.last.frame != nullptr);
   const std::int64_t begin_ns = wall_ns();
-  DUO_TRY_ASSIGN(const std::span<const Person> found, s.tracker->select(*s.last.frame, selections));
-  s.keep(found);
+  const auto found = s.tracker->select(*s.last.frame, selections);
+  if (!found) {  // a rig that does not fit leaves no depth to select in
+    s.watch.end();
+    const auto& fit = s.watch.fit();
+    return fit && !fit->what.empty() ? Error{found.error().code, found.error().what + "; " + fit->what} : found.error();
+  }
+  s.keep(*found);
   s.tracker_ms = static_cast<double>(wall_ns() - begin_ns) * 1e-6;
   return {};
 }

@@ -17,7 +17,7 @@ using namespace test;  // NOLINT: the poses
 TEST(Axes, TheSamePointByHand) {
   const Vec3 p{1, 2, 3};  // a metre to the right, two down, three ahead
   const std::pair<std::string_view, Vec3> table[] = {
-      {"opencv", {1, 2, 3}}, {"ros", {3, -1, -2}}, {"opengl", {1, -2, -3}}, {"unity", {1, -2, 3}}};
+      {"opencv", {1, 2, 3}}, {"ros", {3, -1, -2}}, {"opengl", {1, -2, -3}}, {"unity", {1, -2, 3}}, {"blender", {1, 3, -2}}};
   for (const auto& [name, want] : table) {
     const auto axes = axes_of(name);
     ASSERT_TRUE(axes) << name;
@@ -27,7 +27,7 @@ TEST(Axes, TheSamePointByHand) {
   EXPECT_EQ(std::size(table), kAxesNames.size());
   const auto unknown = axes_of("maya");
   ASSERT_FALSE(unknown);
-  EXPECT_NE(unknown.error().what.find("opencv, ros, opengl, unity"), std::string::npos);
+  EXPECT_NE(unknown.error().what.find("opencv, ros, opengl, unity, blender"), std::string::npos);
 }
 
 TEST(Csv, BytesByHand) {
