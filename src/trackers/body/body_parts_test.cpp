@@ -320,6 +320,17 @@ TEST(BodyFit, BonesGetTheirLengthsAndKeepTheirDirections) {
   EXPECT_NEAR(norm(cross(normalized(was), normalized(is))), 0, 1e-12);
 }
 
+TEST(BodyFit, SpineAndNeckLeaveAtRightAngles) {
+  Places places = standing();
+  places[kLeftHip].y += 0.05;  // the hips are tilted, and the shoulders the other way
+  places[kRightShoulder].y += 0.04;
+  complete(places);
+  EXPECT_NEAR(dot(places[kSpine] - places[kPelvis], places[kLeftHip] - places[kRightHip]), 0, 1e-12);
+  EXPECT_NEAR(dot(places[kNeck] - places[kChest], places[kLeftShoulder] - places[kRightShoulder]), 0, 1e-12);
+  EXPECT_LT(distance(places[kSpine], middle(places[kPelvis], places[kChest])), 0.06);
+  EXPECT_LT(places[kNeck].y, places[kChest].y - 0.08);
+}
+
 TEST(BodySurfaceMap, HeightsGoAlongWithTheTrunk) {
   const Places places = standing();
   const TrunkAxes axes = trunk_axes(places);

@@ -211,16 +211,22 @@ Places with_lengths(const Places& places, const Lengths& lengths) {
   return out;
 }
 
-// Pelvis and chest are where hips and shoulders begin, so that a skeleton at rest has these at right angles to the spine.
+// As a skeleton at rest has it: pelvis and chest are where hips and shoulders begin; the spine leaves the pelvis at a right
+// angle to the hips, and the neck the chest to the shoulders.
 void complete(Places& places) {
   using enum JointId;
   constexpr double kNeckAbove = 0.225;  // of the trunk's length
   constexpr double kNeckBehind_m = 0.022;
+  const auto across = [&](JointId left, JointId right, Vec3 way) {
+    const Vec3 line = places[left] - places[right];
+    return way - (dot(way, line) / std::max(dot(line, line), 1e-9)) * line;
+  };
   places[kPelvis] = middle(places[kLeftHip], places[kRightHip]);
   places[kChest] = middle(places[kLeftShoulder], places[kRightShoulder]);
-  places[kSpine] = middle(places[kPelvis], places[kChest]);
   const Vec3 up = places[kChest] - places[kPelvis], back = cross(up, places[kLeftShoulder] - places[kRightShoulder]);
-  places[kNeck] = places[kChest] + kNeckAbove * up + (kNeckBehind_m / std::max(norm(back), 1e-6)) * back;
+  places[kSpine] = places[kPelvis] + 0.5 * across(kLeftHip, kRightHip, up);
+  const Vec3 neck = kNeckAbove * up + (kNeckBehind_m / std::max(norm(back), 1e-6)) * back;
+  places[kNeck] = places[kChest] + across(kLeftShoulder, kRightShoulder, neck);
 }
 
 void Fit::run(const Scene& scene, const Choices& chosen, const LimbSamples& samples, Fitted& out) {
