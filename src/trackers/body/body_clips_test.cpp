@@ -24,6 +24,7 @@ struct BodyLimits {
   const char* clip;
   double hand_mm, elbow_mm, shoulder_mm, hip_mm, head_mm;
   double arms_bad_percent;
+  int liars;  // most hidden frames of a part in which it was called seen and was off by more than 100 mm
 };
 std::ostream& operator<<(std::ostream& out, const BodyLimits& l) { return out << l.clip; }
 
@@ -86,7 +87,7 @@ TEST_P(BodyClips, WithoutAClick) {
   expect("head", limits.head_mm);
   int known = 0, inside = 0;
   for (const auto& [part, t] : tallies) {
-    EXPECT_LE(t.liars, std::max(1.0, 0.05 * t.hidden)) << part;
+    EXPECT_LE(t.liars, limits.liars) << part << ", hidden in " << t.hidden << " frames";
     known += t.known;
     inside += t.inside;
   }
@@ -96,9 +97,9 @@ TEST_P(BodyClips, WithoutAClick) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rendered, BodyClips,
-                         testing::Values(BodyLimits{"dev_easy_wave", 17, 22, 20, 48, 22, 0.5},
-                                         BodyLimits{"dev_hard_beige", 18, 28, 22, 42, 20, 1.5},
-                                         BodyLimits{"dev_full_turn", 25, 36, 30, 30, 26, 4.5}),
+                         testing::Values(BodyLimits{"dev_easy_wave", 17, 22, 20, 48, 22, 0.5, 1},
+                                         BodyLimits{"dev_hard_beige", 18, 28, 22, 42, 20, 1.5, 2},
+                                         BodyLimits{"dev_full_turn", 25, 36, 30, 30, 26, 4.5, 4}),
                          [](const auto& info) { return std::string(info.param.clip); });
 
 }  // namespace
