@@ -103,7 +103,7 @@ double pan_sigmas(const SceneHealth& health) {
 }
 
 RigVerdict verdict_of(const SceneHealth& health, bool metric) {
-  constexpr double kGoodPan_px = 0.5, kUselessPan_px = 2, kDoubtedPan_sigmas = 3;
+  constexpr double kGoodPan_px = 0.5, kUselessPan_px = 2, kDoubtedPan_sigmas = 2.5;
   const bool sure = metric && sure_of_pan(health);
   if (health.row_px >= kUselessRow_px || (sure && health.pan_px >= kUselessPan_px)) return RigVerdict::kRecalibrate;
   if (health.row_px >= kGoodRow_px || (sure && health.pan_px >= kGoodPan_px)) return RigVerdict::kCanBeImproved;
