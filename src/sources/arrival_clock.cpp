@@ -12,7 +12,7 @@ ArrivalClock::ArrivalClock(double frame_s) : frame_ns_(frame_s * 1e9) {
 }
 
 TimeNs ArrivalClock::capture_ns(TimeNs arrived_ns) {
-  constexpr std::size_t kSteps = 9;
+  constexpr std::size_t kSteps = 5;
   constexpr double kLate = 0.8;  // steps: a picture that much later than the one before it lets expect is none that was lost
   if (any_ && !line_) {
     steps_ns_.push_back(arrived_ns - last_arrival_ns_);

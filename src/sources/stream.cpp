@@ -93,7 +93,7 @@ class Stream final : public Source {
     if (reader_.started() && !reader_.ends_within(kGoodbye)) reader_.detach();
   }
 
-  /// Waits for the first picture, which tells the size, and for those that tell the rate.
+  /// Waits for the first picture, which tells the size.
   Result<void> start() {
     DUO_TRY_ASSIGN(reader_, Worker::start(
                                 "read stream " + state_->name,
@@ -103,15 +103,20 @@ class Stream final : public Source {
     if (taken != Taken::kValue) return no_picture(state_->name, {});
     size_ = first_.pixels.size();
     has_first_ = true;
-    std::unique_lock lock(state_->mutex);
-    if (state_->measured.wait_for(lock, kMeasuring, [this] { return state_->frame_s > 0; })) frame_s_ = state_->frame_s;
+    measured_until_ = std::chrono::steady_clock::now() + kMeasuring;
     return {};
   }
 
   Size size() const override { return size_; }
   std::int64_t count() const override { return 0; }
   bool still() const override { return false; }
-  double frame_s() const override { return frame_s_; }
+  /// Waits for the pictures that tell it: two streams measure at the same time.
+  double frame_s() const override {
+    constexpr double kUnknown_s = 1.0 / 30;
+    std::unique_lock lock(state_->mutex);
+    const bool known = state_->measured.wait_until(lock, measured_until_, [this] { return state_->frame_s > 0; });
+    return known ? state_->frame_s : kUnknown_s;
+  }
   bool live() const override { return true; }
   std::int64_t dropped() const override { return state_->pictures.dropped(); }
   std::string warning() const override {
@@ -134,7 +139,7 @@ class Stream final : public Source {
  private:
   std::shared_ptr<StreamState> state_;
   Size size_;
-  double frame_s_ = 1.0 / 30;
+  std::chrono::steady_clock::time_point measured_until_;
   Picture first_;  // has told the size, and was not given yet
   bool has_first_ = false;
   Worker reader_;
