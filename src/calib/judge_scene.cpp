@@ -67,12 +67,12 @@ bool behind(const Rig& rig, const ScenePose& free, const std::vector<SceneMatch>
   const std::vector<double> d = sorted_disparities_px(rig.metric ? free.rig : rig, matches);
   if (d.empty()) return false;
   const auto at = [&](double share) { return d[static_cast<std::size_t>(share * static_cast<double>(d.size() - 1))]; };
-  return rig.metric ? at(0.5) < -1 - 3 * free.turn_sigma_rad.y * rig.left.fx_px : at(0.9) < -1;
+  return rig.metric ? at(0.5) < -1 - 3 * free.pan_noise_rad * rig.left.fx_px : at(0.9) < -1;
 }
 
 /// Which of both it is, where the rows fit the rig clearly better once the one is undone than once the other is; empty where
 /// they fit with neither: then it is the rig that is wrong.
-std::string why_behind(const Rig& rig, const Evidence& evidence) {
+std::string why_behind(const Rig& rig, const Evidence& evidence, bool pose_known) {
   constexpr double kClearly = 1.5, kFits_px = 2;
   const double last = evidence.size.width - 1;
   std::vector<SceneMatch> swapped, mirrored;
@@ -87,7 +87,7 @@ std::string why_behind(const Rig& rig, const Evidence& evidence) {
     return off.empty() ? 1e9 : quantile(off, 0.5);
   };
   const double by_swap_px = off_px(swapped), by_mirror_px = off_px(mirrored);
-  if (rig.metric && std::min(by_swap_px, by_mirror_px) > kFits_px) return {};
+  if (rig.metric && pose_known && std::min(by_swap_px, by_mirror_px) > kFits_px) return {};
   const char *swap = "give the pictures in the other order", *mirror = "switch the mirroring of the cameras off",
              *behind = "most points would lie behind the cameras";
   if (rig.metric && by_mirror_px > kClearly * by_swap_px)
@@ -153,10 +153,11 @@ Result<Evidence> evidence_of(const SceneMatches& scene, std::vector<SceneMatch> 
   return evidence;
 }
 
-Result<SceneHealth> judge_scene(const Rig& rig, const Evidence& evidence) {
+Result<SceneHealth> judge_scene(const Rig& rig, const Evidence& evidence, bool pose_known) {
   DUO_TRY_ASSIGN(const ScenePose free, fit_scene_pose(rig, kFreePose, evidence.matches, evidence.pairs));
   if (behind(rig, free, evidence.matches))
-    if (std::string why = why_behind(rig, evidence); !why.empty()) return Error{ErrorCode::kBadInput, std::move(why)};
+    if (std::string why = why_behind(rig, evidence, pose_known); !why.empty())
+      return Error{ErrorCode::kBadInput, std::move(why)};
   const std::vector<double> errors = row_errors_px(rig, evidence.matches);
   std::vector<double> sizes;
   for (const double error : errors)

@@ -31,8 +31,10 @@ Result<Evidence> evidence_of(const SceneMatches& scene, std::vector<SceneMatch> 
 /// Two cameras in different places never see nearly all points at the same pixels.
 bool one_picture(const std::vector<SceneMatch>& matches);
 
+/// `pose_known`: false where the rig's pose is still to be found.
+///
 /// Errors  left and right swapped, or both mirrored
-Result<SceneHealth> judge_scene(const Rig& rig, const Evidence& evidence);
+Result<SceneHealth> judge_scene(const Rig& rig, const Evidence& evidence, bool pose_known = true);
 
 /// A pan counts when the scene is sure of it: small errors of lenses look the same.
 bool sure_of_pan(const SceneHealth& health);

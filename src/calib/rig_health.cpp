@@ -47,7 +47,7 @@ Result<SceneRig> rig_from_scene(const std::optional<Rig>& lenses, double baselin
   Rig start = lenses ? *lenses : guessed_rig(pairs.size());
   start.right_from_left = {{}, {-baseline_m, 0, 0}};
   DUO_TRY_ASSIGN(const Evidence seen, evidence(start, pairs, threads));
-  DUO_TRY_ASSIGN(const SceneHealth before, judge_scene(start, seen));
+  DUO_TRY_ASSIGN(const SceneHealth before, judge_scene(start, seen, false));
   return with_pose(start, before, lenses ? kFreePose : kFreePoseAndLens, seen);
 }
 
