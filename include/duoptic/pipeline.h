@@ -34,7 +34,7 @@ struct PipelineSetup {
   Setup frames = {};         // of the engine. The source sets its size and, without rig and rows, its rig; the tracker adds
                              // what it wants; many_at_once is for files
   std::string tracker = {};  // see make_tracker(); empty: none
-  BodyModel body_model = BodyModel::kLite;  // of a tracker with networks
+  BodyModel body_model = BodyModel::kFull;  // of a tracker with networks
   std::int64_t first = 0;                   // pairs before this number are passed over
   std::int64_t every = 1;                   // and of those from there on, all but every N-th
   bool tell_times = false;                  // to the sinks: times differ from run to run

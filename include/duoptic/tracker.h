@@ -45,7 +45,7 @@ struct TrackerSetup {
   double frame_s = 1.0 / 30;
   int threads = 1;                          // that the tracker may use; the result does not depend on them
   bool live = false;                        // a result that comes late is worth less
-  BodyModel body_model = BodyModel::kLite;  // of trackers that have networks
+  BodyModel body_model = BodyModel::kFull;  // of trackers that have networks
 };
 
 /// Follows persons through frames that have what the tracker wants.
@@ -71,7 +71,7 @@ class Tracker {
   /// The persons in this frame. Valid until the next call.
   virtual std::span<const Person> track(const Frame& frame) = 0;
   virtual void reset() = 0;
-  /// What its last look took on the device, where the engine times stages; ends at the first with wall_ns 0.
+  /// Device times of the last select() or track(), where the engine times stages; the list ends at the first wall_ns of 0.
   virtual std::span<const StageTime> stages() const { return {}; }
 };
 

@@ -52,7 +52,8 @@ struct RenderedPerson {
 
 std::unique_ptr<Tracker> body_tracker(const Rig& rig, const Rectified& rectified, int threads) {
   auto tracker = make_body_tracker();
-  const auto prepared = tracker->prepare({.rig = rig, .rectified = rectified, .threads = threads});
+  const auto prepared =
+      tracker->prepare({.rig = rig, .rectified = rectified, .threads = threads, .body_model = BodyModel::kLite});
   EXPECT_TRUE(prepared) << (prepared ? "" : prepared.error().what);
   return tracker;
 }
