@@ -219,15 +219,16 @@ TEST(VulkanEngine, LeavesTheCpuFree) {
   const auto vulkan = prepared(device.engine(), setup);
   run(*vulkan, scene.pair);
   // A quarter of VGA's pixels in a quarter of its millisecond.
-  constexpr std::int64_t kMost_ns = 250'000;
-  std::int64_t least_ns = 1 << 30;
-  // The least of many: what a busy machine adds (caches of others, pages, the clock's slices) is not ours.
+  constexpr double kMost_ns = 250'000;
+  double least_ns = 1e9;
+  // The least of many, beside a copy: what a busy machine adds is not ours.
   for (int i = 0; i < 4 || (least_ns >= kMost_ns && i < 100); ++i) {
     const long allocations = test::allocations;
     const int submits = calls.submits;
     const std::int64_t begin_ns = thread_ns(), inside_ns = calls.inside_ns;
     run(*vulkan, scene.pair);
-    least_ns = std::min(least_ns, thread_ns() - begin_ns - (calls.inside_ns - inside_ns));
+    const auto took_ns = static_cast<double>(thread_ns() - begin_ns - (calls.inside_ns - inside_ns));
+    least_ns = std::min(least_ns, took_ns / test::slowdown());
     EXPECT_LE(calls.submits - submits, 2);
     EXPECT_EQ(test::allocations - allocations, 0);
   }
