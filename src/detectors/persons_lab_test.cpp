@@ -94,12 +94,16 @@ TEST(PersonsLab, EveryTorsoIsFound) {
       found += seen(torso);
     }
     const bool group = std::string_view(photograph.name).starts_with("group");
+    std::size_t of_no_one = 0;
     for (const SeenPerson& person : people) {
       const auto is_there = [&](const Torso& torso) { return near(person, torso); };
       if (std::ranges::any_of(photograph.torsos, is_there) || std::ranges::any_of(photograph.hard, is_there)) continue;
       std::printf("%s: no one is at %d,%d\n", photograph.name, person.box_px.x, person.box_px.y);
       ++(group ? false_in_groups : false_alone);
+      ++of_no_one;
     }
+    EXPECT_LE(people.size(), photograph.torsos.size() + photograph.hard.size() + of_no_one)
+        << photograph.name << ": someone twice";
     (group ? groups : alone) += static_cast<int>(photograph.torsos.size());
     (group ? found_groups : found_alone) += found;
   }
