@@ -17,7 +17,7 @@
 #include "duoptic/result.h"
 #include "duoptic/window.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// Points of a body, left and right as the person says it. The numbers are BlazePose's.
 enum class BodyPoint : std::uint8_t {

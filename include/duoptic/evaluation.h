@@ -19,7 +19,7 @@
 #include "duoptic/skeleton.h"
 #include "duoptic/synthetic.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 // --- Disparity maps of Middlebury's scenes -------------------------------------------------------------------------------
 

@@ -16,7 +16,7 @@
 #include "duoptic/rig.h"
 #include "duoptic/tracker.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 inline constexpr double kNoFarLimit_m = 1e9;
 

@@ -14,7 +14,7 @@
 #include "duoptic/rig.h"
 #include "duoptic/skeleton.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 struct SyntheticSetup {
   Size size = {640, 480};
