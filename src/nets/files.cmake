@@ -6,7 +6,7 @@ duoptic_test(nets/net_file ${dir}/net_file_test.cpp)
 duoptic_test(nets/models ${dir}/models_test.cpp)
 if(DUO_VULKAN)
   target_sources(duoptic PRIVATE ${dir}/net_vk.cpp)
-  duoptic_vulkan_test(nets/vk EVERY_SIZE ASSISTED ${dir}/net_vk_test.cpp)
+  duoptic_vulkan_test(nets/vk EVERY_SIZE ASSISTED SLOW ${dir}/net_vk_test.cpp)
 endif()
 # A peer for benchmarks and tests, where Debian's libxnnpack-dev and libpthreadpool-dev are installed; nothing else needs it.
 find_path(DUO_XNNPACK_INCLUDE xnnpack.h)

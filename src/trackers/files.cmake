@@ -26,7 +26,4 @@ endif()
 duoptic_test(trackers/place_joints ${dir}/place_joints_test.cpp)
 duoptic_test(trackers/thesis_tracker ${dir}/thesis_tracker_test.cpp)
 duoptic_vulkan_test(trackers/kernels EVERY_SIZE ASSISTED SLOW ${dir}/place_joints_vk_test.cpp ${dir}/observe_joints_vk_test.cpp)
-duoptic_vulkan_test(trackers/device ${dir}/device_observer_vk_test.cpp)
-if(TEST trackers/device)
-  set_tests_properties(trackers/device PROPERTIES RUN_SERIAL TRUE)  # it measures CPU time
-endif()
+duoptic_vulkan_test(trackers/device ALONE VulkanTracking.LeavesTheCpuFree ${dir}/device_observer_vk_test.cpp)
