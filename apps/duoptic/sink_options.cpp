@@ -25,6 +25,14 @@ constexpr SinkKind kSinkKinds[] = {
      [](const std::string& target, const SinkOptions&, const TrackHeader& header, std::string&) -> Made {
        return make_bvh(target, header);
      }},
+    {"--gltf", "FILE", "Motion as a binary glTF 2.0, for Blender, game engines and browsers; metres, y up", "glTF", ".glb",
+     [](const std::string& target, const SinkOptions&, const TrackHeader& header, std::string&) -> Made {
+       return make_gltf(target, header);
+     }},
+    {"--trc", "FILE", "Places of the joints as markers, for OpenSim; metres, y up", "TRC", ".trc",
+     [](const std::string& target, const SinkOptions&, const TrackHeader& header, std::string&) -> Made {
+       return make_trc(target, header);
+     }},
     {"--osc", "HOST:PORT", "Send OSC messages by UDP; nothing is received", "OSC", "127.0.0.1:9000",
      [](const std::string& target, const SinkOptions& options, const TrackHeader&, std::string&) -> Made {
        DUO_TRY_ASSIGN(const Axes axes, axes_of(options.axes));
