@@ -21,6 +21,7 @@ deb: setup-build
 	@cmake -S . -B build/deb -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DCMAKE_INSTALL_PREFIX=/usr \
 	  -DDUO_TESTS=OFF -DDUO_PYTHON=ON -DDUO_XNNPACK=OFF >/dev/null
 	@cmake --build build/deb
+	@cmake --build build/deb --target duoptic_manual >/dev/null && gzip -9nf build/deb/man/man1/*.1
 	@cd build/deb && rm -rf packages && cpack >cpack.log || { cat cpack.log; exit 1; }
 	@lintian --fail-on error build/deb/packages/*.deb
 	@ls build/deb/packages/*.deb

@@ -76,9 +76,10 @@ std::unique_ptr<Sink> sink_of(const std::string& target, Axes axes, const TrackH
   if (ends_with(target, ".bvh")) return value(make_bvh(target, header));
   if (ends_with(target, ".glb")) return value(make_gltf(target, header));
   if (ends_with(target, ".trc")) return value(make_trc(target, header));
+  if (ends_with(target, ".mcap")) return value(make_mcap(target, header));
   if (ends_with(target, ".mp4")) return value(make_panel_video(target, header, note));
   refuse("cannot write '" + target +
-         "': no kind of output; there are .jsonl, .csv, .bvh, .glb, .trc, .mp4, osc://HOST:PORT and vmc://HOST:PORT");
+         "': no kind of output; there are .jsonl, .csv, .bvh, .glb, .trc, .mcap, .mp4, osc://HOST:PORT and vmc://HOST:PORT");
 }
 
 /// The frames of one source. A call that comes while another thread is in one fails.
@@ -128,9 +129,13 @@ class Frames {
   std::string add_sink(const py::object& target, const std::string& axes) {
     const auto alone = lock();
     if (ended_) refuse("cannot add an output: there are no more frames");
+    if (pipeline_.tracker() == nullptr) refuse("cannot add an output: outputs are of people; give tracker");
     const std::string name = target.cast<std::filesystem::path>().string();
     std::string note;
     auto sink = sink_of(name, value(axes_of(axes)), pipeline_.header(), note);
+    const Wants& wants = pipeline_.setup().wants;
+    if (sink->wants_pictures() && !(wants.color && wants.views && wants.disparity))
+      refuse("cannot write '" + name + "': it needs color, views and disparity; leave maps out, or name them");
     check(pipeline_.add_sink(name, std::move(sink)));
     return note;
   }

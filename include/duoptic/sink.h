@@ -116,6 +116,12 @@ Result<std::unique_ptr<Sink>> make_gltf(const std::filesystem::path& path, const
 /// Errors  those of every written file
 Result<std::unique_ptr<Sink>> make_trc(const std::filesystem::path& path, const TrackHeader& header);
 
+/// Depth, its camera, coloured points and people as messages of ROS 2 in an MCAP file, see docs/formats.md. Frames need disparity
+/// and colour.
+///
+/// Errors  those of every written file
+Result<std::unique_ptr<Sink>> make_mcap(const std::filesystem::path& path, const TrackHeader& header);
+
 /// Sends a bundle of OSC messages a frame by UDP to `target`, "host:port"; nothing listens and nothing waits: what the network
 /// does not take at once is dropped. See docs/formats.md for the addresses.
 ///

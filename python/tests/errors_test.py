@@ -115,7 +115,13 @@ class Errors(unittest.TestCase):
             with self.assertRaises(duoptic.Error):
                 call()
         with self.assertRaisesRegex(duoptic.Error, "no kind of output"):
-            duoptic.open(CLIP).add_sink("people.docx")
+            duoptic.open(CLIP, tracker="body").add_sink("people.docx")
+        with self.assertRaisesRegex(duoptic.Error, "give tracker"):
+            duoptic.open(CLIP).add_sink("people.jsonl")
+        for name in ("people.mp4", "people.mcap"):
+            with self.assertRaisesRegex(duoptic.Error, "needs color, views and disparity"):
+                duoptic.open(CLIP, tracker="arm", maps=[]).add_sink(self.folder / name)
+        self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_an_output_that_was_not_completed_is_not_there(self):
         frames = duoptic.open(CLIP, tracker="body", model="lite")

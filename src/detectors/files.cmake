@@ -4,7 +4,6 @@ target_sources(duoptic PRIVATE ${dir}/find_people.cpp ${dir}/fixed.cpp ${dir}/ha
   ${dir}/people_finder.cpp ${dir}/place.cpp ${dir}/point_names.cpp ${dir}/see_points.cpp ${dir}/truth_detector.cpp)
 target_link_libraries(duoptic PRIVATE ${CMAKE_DL_LIBS})
 # Installed, the networks are found from where the library is, so that a moved installation finds them, too.
-set(DUO_MODELS_FOLDER ${CMAKE_INSTALL_DATADIR}/duoptic-${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}/models)
 file(RELATIVE_PATH models_from_library /prefix/${CMAKE_INSTALL_LIBDIR} /prefix/${DUO_MODELS_FOLDER})
 set_source_files_properties(${dir}/net_detector.cpp PROPERTIES COMPILE_DEFINITIONS
   "DUO_MODELS=\"${PROJECT_SOURCE_DIR}/models\";DUO_MODELS_FROM_LIBRARY=\"${models_from_library}\"")
