@@ -46,7 +46,7 @@ case $what in
       -DCMAKE_CXX_COMPILER_LAUNCHER="$source/tests/package/reuse_object"
     ninja -C "$folder/part" -t commands all >"$folder/commands.txt"
     if grep -e -Werror "$folder/commands.txt"; then echo "another project's warnings are errors"; exit 1; fi
-    own=$(grep -e '-c .*/consumer.cpp' "$folder/commands.txt")
+    own=$(grep -e '-o CMakeFiles/consumer.dir.* -c ' "$folder/commands.txt")
     if [[ $own == *-ffp-contract* || $own == *-Wall* || $own == *-fvisibility* ]]; then echo "the project gets flags of the library: $own"; exit 1; fi
     if grep -E -e '-o [^ ]*(duoptic_tool|_test|/bin/duoptic)' "$folder/commands.txt"; then echo "more than the library"; exit 1; fi
     DUOPTIC_BUILT=$build cmake --build "$folder/part" --target consumer
