@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The library as other projects get it: package_test.sh install|find_package|pkg_config|subproject|symbols|notice SOURCE BUILD FOLDER
+# The library as other projects get it: package_test.sh install|find_package|pkg_config|subproject|symbols|desktop|notice SOURCE BUILD FOLDER
 # FOLDER keeps the installation between the calls; `install` begins.
 set -euo pipefail
 what=$1 source=$2 build=$3 folder=$4
@@ -62,6 +62,14 @@ case $what in
       grep -qrwF -- "$name" "$source/include/duoptic" || { echo "in no public header: $name"; exit 1; }
     done
     readelf -d "$library" | grep -q "SONAME.*libduoptic.so.${5%.*}\]"
+    ;;
+  desktop)
+    # What menus and software centres show.
+    command -v desktop-file-validate appstreamcli >/dev/null || { echo "skipped: no desktop-file-validate, or no appstreamcli"; exit 77; }
+    share=$prefix/share id=org.duoptic.Duoptic
+    desktop-file-validate "$share/applications/$id.desktop"
+    appstreamcli validate --no-net "$share/metainfo/$id.metainfo.xml"
+    [[ -s $share/icons/hicolor/scalable/apps/$id.svg ]]
     ;;
   notice)
     # Every library that the tool, the shared library and the Python module ask for is in NOTICE, and nothing else is.
