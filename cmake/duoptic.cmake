@@ -3,9 +3,9 @@
 # duoptic_test(GROUP/NAME SOURCES... [SLOW] [ALONE TESTS]): one ctest entry, which runs the tests of these files; the files of a group are one
 # program. Of a release build TESTS (a pattern of GoogleTest's) are an entry of their own, beside which nothing runs: they measure time.
 
-# Warnings are errors in our own code; -ffp-contract=off because a fused multiply-add would round differently from engine to engine.
+# Warnings are errors in our own builds; -ffp-contract=off because a fused multiply-add would round differently from engine to engine.
 add_library(duoptic_flags INTERFACE)
-target_compile_options(duoptic_flags INTERFACE -Wall -Wextra -Werror -ffp-contract=off)
+target_compile_options(duoptic_flags INTERFACE -Wall -Wextra $<$<BOOL:${DUO_WERROR}>:-Werror> -ffp-contract=off)
 # g++ 12 lacks what Highway's newest baseline asks for; with EMU128 allowed the baseline is tested like every other target.
 # SSSE3 and AVX-512 without its later parts (byte counts and permutes) are left out: the few processors that have them lose little to
 # SSE2 and AVX2, and each target has its share of the compile time.
@@ -32,7 +32,7 @@ endfunction()
 if(DUO_TESTS)
   # The headers that every test reads, compiled once.
   add_library(duoptic_test_main OBJECT ${PROJECT_SOURCE_DIR}/tests/main.cpp ${PROJECT_SOURCE_DIR}/tests/allocations.cpp)
-  target_link_libraries(duoptic_test_main PUBLIC duoptic duoptic_flags GTest::gtest)
+  target_link_libraries(duoptic_test_main PUBLIC duoptic duoptic_flags GTest::gtest PkgConfig::HWY)
   target_include_directories(duoptic_test_main PUBLIC ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
   # Tests run once, and most of their compile time is the optimiser's; what they test is in the library.
   target_compile_options(duoptic_test_main PUBLIC $<IF:$<CONFIG:Release>,-O1,-O0>)

@@ -32,7 +32,8 @@ struct SinkOptions {
 
   SinkOptions() : targets(sink_kinds().size()) {}
   void add_to(CLI::App& app);
-  bool wants_video() const;
+  /// An output shows the whole frame, not people alone.
+  bool wants_maps() const;
   /// One more output of a running pipeline, called `target`.
   ///
   /// Returns  what its user should know of it, or ""
