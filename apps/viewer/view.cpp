@@ -194,7 +194,7 @@ Result<Exit> run(Options options, const CLI::App& app) {
   DUO_TRY_ASSIGN(window, Window::open("duoptic view", kWindow));
   set_style(window->scale());
   DUO_TRY_ASSIGN(Sidebar sidebar, Sidebar::make(options.player, *player, window->device(), window->scale()));
-  const Interrupt interrupt;  // closes the window as its user would: lines are completed
+  Interrupt::is_the_end();  // it closes the window as its user would: lines are completed
   const Result<void> shown = Viewer(options, *window, *player, std::move(sidebar)).run();
   DUO_TRY_ASSIGN(const Exit exit, player->finish());
   if (!player->warning().empty()) say(app, "warning: " + player->warning());
@@ -222,7 +222,7 @@ Command add(CLI::App& app) {
                           ->excludes(loop);
   sub->add_option("--after", options->after, "The frame of the screenshot")
       ->type_name("N")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
+      ->check(within(std::int64_t{0}, std::int64_t{1} << 40))
       ->needs(shot)
       ->capture_default_str();
   add_strict_option(*sub, options->player.check);

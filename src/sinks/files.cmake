@@ -15,6 +15,7 @@ target_sources(duoptic PRIVATE
   ${dir}/json_lines.cpp
   ${dir}/osc.cpp
   ${dir}/osc_target.cpp
+  ${dir}/output_set.cpp
   ${dir}/panel_video.cpp
   ${dir}/pfm.cpp
   ${dir}/ply.cpp

@@ -155,6 +155,9 @@ Recorder::~Recorder() = default;
 
 Result<Recorder> Recorder::open(const std::filesystem::path& path, const RecorderSetup& setup) {
   av_log_set_level(AV_LOG_QUIET);  // what is wrong is said in our results
+  if (is_stdout(path))
+    return Error{ErrorCode::kWriteFailed,
+                 "cannot record to stdout: a recording is completed in places already written; name a file"};
   DUO_TRY_ASSIGN(PartialFile file, PartialFile::open(path));
   struct stat there {};
   if (!setup.replace && ::lstat(path.c_str(), &there) == 0)
