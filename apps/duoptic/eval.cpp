@@ -10,10 +10,10 @@
 
 #include "command.h"
 #include "duoptic/output_set.h"
+#include "duoptic/peers.h"
 #include "duoptic/sink.h"
 #include "eval_clip.h"
 #include "interrupt.h"
-#include "duoptic/peers.h"
 #include "timing.h"
 
 namespace duo::app::eval {

@@ -4,6 +4,7 @@ target_sources(duoptic_tool PRIVATE
   ${dir}/panels.cpp
   ${dir}/player.cpp
   ${dir}/sidebar.cpp
+  ${dir}/start.cpp
   ${dir}/style.cpp
   ${dir}/texture.cpp
   ${dir}/view.cpp

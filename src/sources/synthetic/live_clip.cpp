@@ -109,11 +109,7 @@ class LiveClip final : public PairSource {
   std::optional<Rig> rig() const override { return rig_; }
   std::int64_t dropped() const override { return dropped_; }
   std::string warning() const override {
-    return rendered_ < all_ ? fmt::format(
-                                  "rendering the synthetic person: {} of {} pairs; slower than she moves, until the "
-                                  "next start",
-                                  rendered_.load(), all_)
-                            : std::string();
+    return rendered_ < all_ ? "the synthetic person is shown while she is rendered, slower than she moves" : "";
   }
 
   Result<Next> next(Pair& into) override {
