@@ -12,9 +12,9 @@
 #include "bench_device.h"
 #include "bench_networks.h"
 #include "command.h"
+#include "duoptic/interrupt.h"
 #include "duoptic/peers.h"
 #include "duoptic/synthetic.h"
-#include "interrupt.h"
 #include "timing.h"
 
 namespace duo::app::bench {

@@ -11,9 +11,9 @@
 
 #include "command.h"
 #include "duoptic/calibrate.h"
+#include "duoptic/interrupt.h"
 #include "duoptic/stdout.h"
 #include "from_scene.h"
-#include "interrupt.h"
 #include "progress.h"
 #include "rig_report.h"
 

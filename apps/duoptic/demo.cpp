@@ -7,12 +7,12 @@
 
 #include "command.h"
 #include "duoptic/frame_files.h"
+#include "duoptic/interrupt.h"
 #include "duoptic/output_set.h"
 #include "duoptic/paint.h"
 #include "duoptic/sink.h"
 #include "duoptic/synthetic.h"
 #include "eval_clip.h"
-#include "interrupt.h"
 #include "progress.h"
 #include "timing.h"
 

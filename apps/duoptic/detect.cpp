@@ -8,11 +8,11 @@
 
 #include "command.h"
 #include "duoptic/detector.h"
+#include "duoptic/interrupt.h"
 #include "duoptic/output_set.h"
 #include "duoptic/paint.h"
 #include "duoptic/sink.h"
 #include "duoptic/source.h"
-#include "interrupt.h"
 #include "progress.h"
 
 namespace duo::app::detect {

@@ -9,11 +9,11 @@
 #include <set>
 
 #include "command.h"
+#include "duoptic/interrupt.h"
 #include "duoptic/output_set.h"
 #include "duoptic/peers.h"
 #include "duoptic/sink.h"
 #include "eval_clip.h"
-#include "interrupt.h"
 #include "timing.h"
 
 namespace duo::app::eval {

@@ -4,9 +4,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "duoptic/interrupt.h"
 #include "eval_clip.h"
 #include "input.h"
-#include "interrupt.h"
 
 namespace duo::app::eval_clip {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "interrupt.h"
+#include "duoptic/interrupt.h"
 #include "rig_report.h"
 
 namespace duo::app {

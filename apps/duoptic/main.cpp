@@ -11,9 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "duoptic/interrupt.h"
 #include "duoptic/source.h"
 #include "help.h"
-#include "interrupt.h"
 
 namespace duo::app {
 

@@ -8,9 +8,9 @@
 #include "command.h"
 #include "duoptic/calibrate.h"
 #include "duoptic/depth_quality.h"
+#include "duoptic/interrupt.h"
 #include "duoptic/pipeline.h"
 #include "input.h"
-#include "interrupt.h"
 #include "progress.h"
 #include "rig_report.h"
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "duoptic/interrupt.h"
 #include "duoptic/pipeline.h"
 #include "input.h"
-#include "interrupt.h"
 #include "progress.h"
 #include "rig_report.h"
 #include "timing.h"

@@ -7,10 +7,10 @@
 #include <thread>
 
 #include "command.h"
+#include "duoptic/interrupt.h"
 #include "duoptic/rig_files.h"
 #include "duoptic/rig_health.h"
 #include "input.h"
-#include "interrupt.h"
 #include "rig_report.h"
 
 namespace duo::app::rig {

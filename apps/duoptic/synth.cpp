@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "command.h"
+#include "duoptic/interrupt.h"
 #include "duoptic/synthetic.h"
-#include "interrupt.h"
 #include "progress.h"
 
 namespace duo::app::synth {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
+#include "duoptic/interrupt.h"
 #include "duoptic/skew_watch.h"
-#include "interrupt.h"
 #include "progress.h"
 #include "rig_report.h"
 #include "sink_options.h"

@@ -8,6 +8,7 @@
 #include <ctime>
 #include <filesystem>
 
+#include "duoptic/one_pair.h"
 #include "rig_report.h"
 #include "timing.h"
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "duoptic/cameras.h"
-#include "interrupt.h"
+#include "duoptic/interrupt.h"
 #include "style.h"
 
 namespace duo::app::view {

@@ -9,8 +9,8 @@
 
 #include "command.h"
 #include "duoptic/frame_files.h"
+#include "duoptic/interrupt.h"
 #include "duoptic/source_choice.h"
-#include "interrupt.h"
 #include "panels.h"
 #include "player.h"
 #include "rig_report.h"

@@ -116,9 +116,6 @@ class PairSource {
 Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right,
                                                const PairWish& wish = {});
 
-/// One pair, as a stream.
-std::unique_ptr<PairSource> one_pair(Pair pair);
-
 /// The pairs of files at the pace of their capture times, as if they came live: one that is late is dropped when the next is
 /// due, too.
 std::unique_ptr<PairSource> in_real_time(std::unique_ptr<PairSource> pairs);

@@ -8,6 +8,7 @@
 #include "calib/board_page.h"
 #include "core/coded_picture.h"
 #include "core/file.h"
+#include "duoptic/stdout.h"
 
 extern "C" {
 #include <libavutil/crc.h>

@@ -11,6 +11,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "duoptic/stdout.h"
+
 namespace duo {
 namespace {
 
@@ -132,6 +134,22 @@ bool is_stdout(const std::filesystem::path& path) {
   return path == "-" || path == "/dev/stdout" || path == "/dev/fd/1" || path == "/proc/self/fd/1";
 }
 
+namespace {
+
+/// What a file holds, from its first byte on, to stdout after all that was printed there.
+Result<void> pour_out(int file) {
+  std::string block(1 << 16, '\0');
+  if (std::fflush(stdout) != 0 || ::lseek(file, 0, SEEK_SET) != 0) return write_error("stdout", errno);
+  for (;;) {
+    const ssize_t n = ::read(file, block.data(), block.size());
+    if (n == 0) return {};
+    if (n < 0 || !write_all(STDOUT_FILENO, std::string_view(block).substr(0, static_cast<std::size_t>(n))))
+      return write_error("stdout", errno);
+  }
+}
+
+}  // namespace
+
 PartialFile::PartialFile(PartialFile&& other) noexcept
     : path_(std::move(other.path_)),
       folder_(std::move(other.folder_)),
@@ -208,20 +226,8 @@ Result<void> PartialFile::take_name(Earlier earlier) {
   return {};
 }
 
-/// What was written, from the first byte on, to stdout after all that was printed there.
-Result<void> PartialFile::pour_out() {
-  std::string block(1 << 16, '\0');
-  if (std::fflush(stdout) != 0 || ::lseek(file_.get(), 0, SEEK_SET) != 0) return write_error(path_, errno);
-  for (;;) {
-    const ssize_t n = ::read(file_.get(), block.data(), block.size());
-    if (n == 0) return {};
-    if (n < 0 || !write_all(STDOUT_FILENO, std::string_view(block).substr(0, static_cast<std::size_t>(n))))
-      return write_error(path_, errno);
-  }
-}
-
 Result<void> PartialFile::publish() {
-  if (is_stdout(path_)) return pour_out();
+  if (is_stdout(path_)) return pour_out(file_.get());
   // A failed close() may be the first to tell of a full disk over a network.
   if (::fsync(file_.get()) != 0 || !file_.close()) return write_error(path_, errno);
   return take_name(Earlier::kReplace);

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "duoptic/result.h"
-#include "duoptic/stdout.h"
 
 namespace duo {
 
@@ -63,7 +62,7 @@ std::filesystem::path shown(const std::filesystem::path& path);
 
 /// A file written piece by piece: a hidden one beside `path`, of a name that nobody can guess, until it takes its own. Both
 /// names are looked up in the folder as it was opened. Gone with this object if it never took its name; a file of another's
-/// is neither written nor removed. One for stdout is kept in memory, and comes out in publish().
+/// is neither written nor removed.
 class PartialFile {
  public:
   /// Errors  those of write_file()
@@ -87,7 +86,6 @@ class PartialFile {
  private:
   explicit PartialFile(std::filesystem::path path) : path_(std::move(path)) {}
   Result<void> create();
-  Result<void> pour_out();
   bool is_ours() const;
   int rename(Earlier earlier);
 

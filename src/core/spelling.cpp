@@ -28,13 +28,14 @@ std::string likeliest(const std::string& word, const std::vector<std::string>& n
   double least = 1;
   for (const std::string& name : names) {
     const std::string known = bare(name);
-    const std::size_t letters = std::min(meant.size(), known.size());
-    const bool begins = letters >= 2 && meant.compare(0, letters, known, 0, letters) == 0;
+    const std::size_t letters = std::min(meant.size(), known.size()), off = distance(meant, known);
+    const auto alike = std::mismatch(meant.begin(), meant.begin() + static_cast<std::ptrdiff_t>(letters), known.begin());
+    const auto begin = static_cast<std::size_t>(alike.first - meant.begin());
     const bool inside =
         letters >= 3 && (known.find("-" + meant) != std::string::npos || meant.find("-" + known) != std::string::npos);
-    const std::size_t off = distance(meant, known);
-    const double share = static_cast<double>(off) / (1.5 + static_cast<double>(letters) / 3);
-    const double badness = begins ? std::min(share, 0.4) : inside ? std::min(share, 0.6) : share;
+    const double by_letters = static_cast<double>(off) / (1.5 + static_cast<double>(letters) / 3);
+    const double by_parts = letters >= 2 && begin == letters ? 0.4 : inside ? 0.6 : begin >= 3 ? 0.8 : 1.0;
+    const double badness = std::min(by_letters, by_parts + 0.001 * static_cast<double>(off));
     if (badness < least) best = name, least = badness;
   }
   return best;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/file.h"
+#include "duoptic/stdout.h"
 #include "duoptic/sink.h"
 #include "sinks/text_values.h"
 

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "core/file.h"
+#include "duoptic/stdout.h"
 
 namespace duo {
 namespace fs = std::filesystem;

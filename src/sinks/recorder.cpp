@@ -10,6 +10,7 @@
 
 #include "core/capture_mark.h"
 #include "core/file.h"
+#include "duoptic/stdout.h"
 #include "core/libav_file.h"
 #include "duoptic/recording.h"
 #include "sinks/coded_view.h"

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "duoptic/one_pair.h"
 #include "duoptic/source.h"
 #include "sources/camera/camera.h"
 #include "sources/camera/modes.h"
