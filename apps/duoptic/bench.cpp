@@ -12,8 +12,9 @@
 #include "bench_device.h"
 #include "bench_networks.h"
 #include "command.h"
+#include "duoptic/interrupt.h"
+#include "duoptic/peers.h"
 #include "duoptic/synthetic.h"
-#include "peers.h"
 #include "timing.h"
 
 namespace duo::app::bench {
@@ -223,6 +224,7 @@ void print(const Table& table) {
 }
 
 Result<Exit> run(const Options& options) {
+  Interrupt::end_at_once();
   if (!options.instructions.empty()) DUO_TRY(limit_instructions(options.instructions));
   nlohmann::json out = nlohmann::json::array();
   for (const Size size : {Size{640, 480}, Size{1280, 720}}) {
@@ -278,7 +280,7 @@ Command add(CLI::App& app) {
       ->type_name("NAME");
   sub->add_option("--repeat", options->repeat, "Runs of each contestant; the reference runs once")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000))
+      ->check(within(1, 1000))
       ->capture_default_str();
   sub->add_flag("--json", options->json, "Print it as JSON");
   sub->footer(kFooter);

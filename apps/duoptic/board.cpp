@@ -7,6 +7,7 @@
 
 #include "command.h"
 #include "duoptic/board.h"
+#include "duoptic/stdout.h"
 
 namespace duo::app::board {
 namespace {
@@ -27,19 +28,15 @@ struct Options {
 
 Result<Exit> run(const Options& options) {
   DUO_TRY_ASSIGN(const Paper paper, parse_paper(options.paper));
-  DUO_TRY_ASSIGN(Board board, parse_board(options.board, options.square_mm.value_or(10) / 1000));
-  if (!options.square_mm) {
-    board.square_m = largest_square_m(board, paper);
-    if (board.square_m == 0)
-      return Error{
-          ErrorCode::kBadInput,
-          fmt::format("cannot print {} on {}: its squares would be below 1 mm; take fewer squares", board.name(), paper.name)};
-  }
+  DUO_TRY_ASSIGN(const Board board, options.square_mm ? parse_board(options.board, *options.square_mm / 1000)
+                                                      : largest_board(options.board, paper));
   DUO_TRY(write_board(board, paper, options.output));
   const double square_mm = 1000 * board.square_m;
-  fmt::print("{}: {} with squares of {:.4g} mm on {}; print it at 100 % and check the ruler, then\n", options.output,
-             board.name(), square_mm, paper.name);
-  fmt::print("  duoptic calibrate left.avi right.avi --board {} --square-mm {:.4g} -o rig.json\n", board.name(), square_mm);
+  const std::string said = fmt::format(
+      "{}: {} with squares of {:.4g} mm on {}; print it at 100 % and check the ruler, then\n"
+      "  duoptic calibrate left.avi right.avi --board {} --square-mm {:.4g} -o rig.json\n",
+      options.output, board.name(), square_mm, paper.name, board.name(), square_mm);
+  is_stdout(options.output) ? put_on_stderr(said) : fmt::print("{}", said);
   return Exit::kOk;
 }
 
@@ -48,9 +45,12 @@ Result<Exit> run(const Options& options) {
 Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("board", "A calibration board to print, in true scale");
   const auto options = std::make_shared<Options>();
-  sub->add_option("-o,--output", options->output, "File that ends with .pdf, .svg or .png")->type_name("FILE")->required();
+  sub->add_option("-o,--output", options->output, "File that ends with .pdf, .svg or .png; - is stdout, a PDF")
+      ->type_name("FILE")
+      ->required();
   sub->add_option("--board", options->board, "chessboard:9x6 (inner corners) or charuco:9x6 (squares)")->capture_default_str();
-  sub->add_option("--square-mm", options->square_mm, "Side of a square; without it the largest whole one that fits");
+  sub->add_option("--square-mm", options->square_mm, "Side of a square; without it the largest whole one that fits")
+      ->check(within(1.0, 1000.0));
   sub->add_option("--paper", options->paper, "a4, letter or a3")->capture_default_str();
   sub->footer(kFooter);
   return {sub, [options] { return run(*options); }};

@@ -7,9 +7,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 
 #include "command.h"
 #include "duoptic/calibrate.h"
+#include "duoptic/interrupt.h"
+#include "duoptic/stdout.h"
 #include "from_scene.h"
 #include "progress.h"
 #include "rig_report.h"
@@ -28,17 +31,19 @@ constexpr char kFooter[] =
 
 struct Options {
   std::string left, right, board = "chessboard:9x6", output, report, left_name = "left", right_name = "right";
-  double square_mm = 30, near_m = 0.5;
+  std::optional<double> square_mm;
+  double near_m = 0.5;
   bool json = false, quiet = false, no_board = false;
   FromSceneOptions from_scene;
 };
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-/// rig.json gets rig_report.html.
+/// rig.json gets rig_report.html, a rig on stdout none.
 std::filesystem::path report_path(const Options& options) {
   if (!options.report.empty()) return options.report;
   const std::filesystem::path rig = options.output;
+  if (is_stdout(rig)) return {};
   return rig.parent_path() / (rig.stem().string() + "_report.html");
 }
 
@@ -117,9 +122,9 @@ void print(const Calibration& c, const Calibrator& calibrator, const RigDescript
   fmt::print("baseline                {:.2f} +- {:.2f} mm; pan +- {:.3f}, tilt +- {:.3f}, roll +- {:.3f} degrees\n",
              1000 * rig.baseline_m(), 1000 * u.baseline_m, u.pan_rad * kDegrees, u.tilt_rad * kDegrees, u.roll_rad * kDegrees);
   fmt::print(
-      "depth expected to be    +- {:.1f} mm at 1 m, {:.1f} mm at 1.5 m, {:.1f} mm at 2 m (one sigma; squares of exactly {} "
+      "depth expected to be    +- {:.1f} mm at 1 m, {:.1f} mm at 1.5 m, {:.1f} mm at 2 m (one sigma; squares of exactly {:g} "
       "mm)\n",
-      1000 * u.depth_m[0], 1000 * u.depth_m[1], 1000 * u.depth_m[2], options.square_mm);
+      1000 * u.depth_m[0], 1000 * u.depth_m[1], 1000 * u.depth_m[2], *options.square_mm);
   fmt::print("both cameras see        {:.0f} degrees, {:.0f} % of the left picture at 2 m\n", description.common_degrees,
              100 * description.common_share);
   fmt::print("for depth from {} m     --max-disparity {}\n", description.near_m, description.max_disparity);
@@ -155,8 +160,13 @@ Result<Exit> from_scene(const Options& options, const CLI::App& app) {
   return run_from_scene(all, app);
 }
 
-Result<Exit> run(const Options& options, const CLI::App& app) {
-  DUO_TRY_ASSIGN(const Board board, parse_board(options.board, options.square_mm / 1000));
+Result<Exit> run(Options options, const CLI::App& app) {
+  const bool prints = may_print(options.output, options.json) && !options.quiet;
+  DUO_TRY_ASSIGN(const Paper paper, parse_paper("a4"));
+  DUO_TRY_ASSIGN(const Board board, options.square_mm ? parse_board(options.board, *options.square_mm / 1000)
+                                                      : largest_board(options.board, paper));
+  const bool assumed = !options.square_mm;
+  options.square_mm = 1000 * board.square_m;
   DUO_TRY_ASSIGN(BoardPictures pictures, BoardPictures::open(options.left, options.right, options.from_scene.input.wish()));
   std::unique_ptr<Calibrator> calibrator;
   Progress progress(app, pictures.count(), options.quiet);
@@ -169,25 +179,27 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
     DUO_TRY_ASSIGN(const BoardView* view, calibrator->add(pair, name));
     shown.offer(pair, *view);
     progress.frame(calibrator->pairs());
+    if (Interrupt::asked()) return stopped("the rig was found");
   }
   if (!calibrator) return Error{ErrorCode::kBadInput, fmt::format("cannot calibrate: {} has no pictures", options.left)};
   DUO_TRY_ASSIGN(Calibration calibration, calibrator->solve());
   calibration.rig.left_name = options.left_name;
   calibration.rig.right_name = options.right_name;
   calibration.rig.date = date_now();
-  if (app.count("--square-mm") == 0)
+  if (assumed)
     calibration.warnings.push_back(
-        fmt::format("--square-mm was not given, and squares of {} mm were assumed: measure them, every "
-                    "distance depends on it",
-                    options.square_mm));
+        fmt::format("--square-mm was not given, and squares of {:g} mm were assumed, as duoptic board prints them on A4: "
+                    "measure them, every distance depends on it",
+                    *options.square_mm));
   DUO_TRY_ASSIGN(const RigDescription description, describe_rig(calibration.rig, options.near_m));
   DUO_TRY(save_rig(calibration.rig, options.output));
-  DUO_TRY(write_calibration_report(calibration, board, description, shown.pair(), report_path(options)));
+  const auto report = report_path(options);
+  if (!report.empty()) DUO_TRY(write_calibration_report(calibration, board, description, shown.pair(), report));
   if (options.json)
     fmt::print(
         "{}\n",
         to_json(calibration, *calibrator, description, options).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-  else if (!options.quiet)
+  else if (prints)
     print(calibration, *calibrator, description, options);
   for (const std::string& warning : calibration.warnings) say(app, "warning: " + warning);
   if (!pictures.warning().empty()) say(app, "warning: " + pictures.warning());
@@ -202,12 +214,14 @@ Command add(CLI::App& app) {
   sub->add_option("LEFT", options->left, "Video or folder of pictures of the left camera")->required();
   sub->add_option("RIGHT", options->right, "The same of the right camera");
   sub->add_option("--board", options->board, "chessboard:9x6 (inner corners) or charuco:9x6 (squares)")->capture_default_str();
-  sub->add_option("--square-mm", options->square_mm, "Side of a square as you measure it on the print")->capture_default_str();
+  sub->add_option("--square-mm", options->square_mm,
+                  "Side of a square as you measure it on the print; without it what duoptic board prints on A4")
+      ->check(within(1.0, 1000.0));
   sub->add_option("-o,--output", options->output, "The rig file")->type_name("FILE")->required();
   sub->add_option("--report", options->report, "The report (HTML); without it beside the rig, as RIG_report.html")
       ->type_name("FILE");
   sub->add_option("--near", options->near_m, "Nearest depth in metres to print the disparities for")
-      ->check(CLI::Range(0.05, 100.0))
+      ->check(within(0.05, 100.0))
       ->capture_default_str();
   sub->add_option("--left-name", options->left_name, "What the rig calls the left camera")->capture_default_str();
   sub->add_option("--right-name", options->right_name, "And the right one")->capture_default_str();

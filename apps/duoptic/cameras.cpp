@@ -13,37 +13,14 @@
 namespace duo::app::cameras {
 namespace {
 
-/// Two cameras by their place in the list, and the format both can give at the wished size and rate.
-struct Together {
-  std::size_t left, right;
-  std::string format;
-};
-
-std::vector<Together> all_together(const std::vector<CameraInfo>& cameras, const CameraWish& wish) {
-  std::vector<Together> out;
-  for (std::size_t left = 0; left < cameras.size(); ++left)
-    for (std::size_t right = left + 1; right < cameras.size(); ++right)
-      if (const auto format = common_format(cameras[left], cameras[right], wish)) out.push_back({left, right, *format});
-  // Two of one model see alike.
-  std::stable_partition(out.begin(), out.end(),
-                        [&](const Together& t) { return cameras[t.left].name == cameras[t.right].name; });
-  return out;
-}
-
-/// camera:0 for /dev/video0.
-std::string short_name(const CameraInfo& camera) {
-  const std::string device = "/dev/video";
-  return camera.path.rfind(device, 0) == 0 ? "camera:" + camera.path.substr(device.size()) : camera.path;
-}
-
-nlohmann::json json_of(const std::vector<CameraInfo>& cameras, const std::vector<Together>& pairs, const CameraWish& wish) {
+nlohmann::json json_of(const std::vector<CameraInfo>& cameras, const std::vector<CameraPair>& pairs, const CameraWish& wish) {
   nlohmann::json out = {{"cameras", nlohmann::json::array()}, {"pairs", nlohmann::json::array()}};
   for (const CameraInfo& camera : cameras) {
     nlohmann::json modes = nlohmann::json::array();
     for (const CameraMode& mode : camera.modes)
       modes.push_back(
           {{"format", mode.format}, {"width", mode.size.width}, {"height", mode.size.height}, {"rates_hz", mode.rates_hz}});
-    out["cameras"].push_back({{"source", short_name(camera)},
+    out["cameras"].push_back({{"source", source_name(camera)},
                               {"path", camera.path},
                               {"name", camera.name},
                               {"bus_path", camera.bus_path},
@@ -51,9 +28,9 @@ nlohmann::json json_of(const std::vector<CameraInfo>& cameras, const std::vector
                               {"usb_mbit_s", camera.usb_mbit_s},
                               {"modes", modes}});
   }
-  for (const Together& pair : pairs)
-    out["pairs"].push_back({{"left", short_name(cameras[pair.left])},
-                            {"right", short_name(cameras[pair.right])},
+  for (const CameraPair& pair : pairs)
+    out["pairs"].push_back({{"left", source_name(cameras[pair.left])},
+                            {"right", source_name(cameras[pair.right])},
                             {"format", pair.format},
                             {"width", wish.size.width},
                             {"height", wish.size.height},
@@ -62,7 +39,7 @@ nlohmann::json json_of(const std::vector<CameraInfo>& cameras, const std::vector
 }
 
 void print_camera(const CameraInfo& camera) {
-  fmt::print("{}  {}\n  on {}{}{}\n", short_name(camera), camera.name, camera.bus_path,
+  fmt::print("{}  {}\n  on {}{}{}\n", source_name(camera), camera.name, camera.bus_path,
              camera.serial.empty() ? "" : ", serial " + camera.serial,
              camera.usb_mbit_s > 0 ? fmt::format(", {} Mbit/s", camera.usb_mbit_s) : "");
   for (const CameraMode& mode : camera.modes)
@@ -73,14 +50,14 @@ void print_camera(const CameraInfo& camera) {
 Result<Exit> run(bool json) {
   const CameraWish wish;
   DUO_TRY_ASSIGN(const std::vector<CameraInfo> cameras, find_cameras());
-  const std::vector<Together> pairs = all_together(cameras, wish);
+  const std::vector<CameraPair> pairs = camera_pairs(cameras, wish);
   if (json) {
     fmt::print("{}\n", json_of(cameras, pairs, wish).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     return Exit::kOk;
   }
   for (const CameraInfo& camera : cameras) print_camera(camera);
-  for (const Together& pair : pairs)
-    fmt::print("together: {} {}, {}x{} at {:g} Hz as {}\n", short_name(cameras[pair.left]), short_name(cameras[pair.right]),
+  for (const CameraPair& pair : pairs)
+    fmt::print("together: {} {}, {}x{} at {:g} Hz as {}\n", source_name(cameras[pair.left]), source_name(cameras[pair.right]),
                wish.size.width, wish.size.height, wish.rate_hz, pair.format);
   if (pairs.empty()) fmt::print("no two of them give {}x{} in a format that is read here\n", wish.size.width, wish.size.height);
   return Exit::kOk;

@@ -9,6 +9,7 @@
 
 #include "duoptic/engine.h"
 #include "duoptic/result.h"
+#include "duoptic/window.h"
 
 namespace duo::app {
 
@@ -51,8 +52,24 @@ struct EngineOptions {
 /// --size WxH, like 640x480; a usage error where it is none.
 CLI::Option* add_size_option(CLI::App& app, Size& size, const char* help);
 
+/// An option that gives a rectangle of the picture: X,Y,W,H; a usage error where it is none.
+CLI::Option* add_window_option(CLI::App& app, const char* name, const char* help, const std::function<void(Window)>& take);
+
 /// For options that hold a number above 0, finite.
 CLI::Validator above_zero();
+
+/// For options that hold a number in a range; NaN is in none.
+CLI::Validator within(double least, double most);
+CLI::Validator within(int least, int most);
+CLI::Validator within(std::int64_t least, std::int64_t most);
+
+/// Whether what is said of `output` may be printed: not where that goes to stdout itself.
+///
+/// Errors  thrown as usage: --json would go there, too
+bool may_print(const std::string& output, bool json);
+
+/// What a command ends with that a signal stops before it has a result.
+Error stopped(const std::string& before);
 
 /// Writes to stderr. A stderr that is closed or full changes nothing: fmt::print() would throw.
 void put_on_stderr(const std::string& text);

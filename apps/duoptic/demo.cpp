@@ -7,11 +7,12 @@
 
 #include "command.h"
 #include "duoptic/frame_files.h"
+#include "duoptic/interrupt.h"
+#include "duoptic/output_set.h"
 #include "duoptic/paint.h"
 #include "duoptic/sink.h"
 #include "duoptic/synthetic.h"
 #include "eval_clip.h"
-#include "output.h"
 #include "progress.h"
 #include "timing.h"
 
@@ -81,6 +82,16 @@ void print(const char* what, const RenderedAccuracy& a) {
              a.coverage_percent, a.bad_percent, a.depth_error_percent);
 }
 
+/// An output that a signal fails.
+class Stops final : public Sink {
+ public:
+  Result<void> write(const TrackedFrame&) override {
+    if (Interrupt::asked()) return stopped("the videos were whole");
+    return {};
+  }
+  Result<void> finish() override { return {}; }
+};
+
 /// A person in the room moves an arm, hides its hand behind the back and shows it again; the tracker follows.
 Result<void> track_person(const Options& options, const CLI::App& app) {
   const SyntheticClipSetup setup{.script = "behind"};
@@ -89,7 +100,10 @@ Result<void> track_person(const Options& options, const CLI::App& app) {
   const std::filesystem::path clip = std::filesystem::path(options.folder) / "clip";
   {
     Progress progress(app, 0, false);
-    DUO_TRY(write_clip(setup, clip, options.engine.threads, [&](int done, int) { progress.frame(done); }));
+    DUO_TRY(write_clip(setup, clip, options.engine.threads, [&](int done, int) {
+      progress.frame(done);
+      return !Interrupt::asked();
+    }));
   }
   DUO_TRY_ASSIGN(const ClipTruth truth, load_clip(clip));
   std::vector<ClipScore> scores;
@@ -103,6 +117,7 @@ Result<void> track_person(const Options& options, const CLI::App& app) {
       std::string note;
       DUO_TRY_ASSIGN(auto sink, make_panel_video(video, to.header(), note));
       if (!note.empty()) say(app, "warning: " + note);
+      DUO_TRY(to.add_sink("signals", std::make_unique<Stops>()));
       return to.add_sink(video, std::move(sink));
     };
     DUO_TRY_ASSIGN(ClipScore score, score_clip(clip, truth, {.pipeline = std::move(pipeline), .add_sinks = add_video}));
@@ -117,6 +132,19 @@ Result<void> track_person(const Options& options, const CLI::App& app) {
       "\nLook at {0}/body.mp4 (joints and bones, depth, regions, hue) and {0}/arm.mp4, and how {0}/thesis.mp4 loses the arm.\n",
       options.folder);
   return {};
+}
+
+/// What to type next, here and now: this program as it is reached from the working folder, and the clip just rendered.
+void print_next(const std::string& folder) {
+  std::error_code ignored;
+  const std::filesystem::path here =
+      std::filesystem::proximate(std::filesystem::read_symlink("/proc/self/exe", ignored), ignored);
+  const std::string program = here.empty() || *here.begin() == ".." ? "duoptic" : here.string(), clip = folder + "/clip";
+  fmt::print(
+      "\nNext: the same person in a window, and as a file of joints\n"
+      "  {0} view {1}/left.avi {1}/right.avi --rig {1}/calibration_truth.yml --loop\n"
+      "  {0} track {1}/left.avi {1}/right.avi --rig {1}/calibration_truth.yml -o {2}/people.jsonl\n",
+      program, clip, folder);
 }
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
@@ -142,6 +170,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
       "beside it left.png, disparity.png, depth.png (mm), cloud.png and cloud.ply (for a 3D viewer).\n",
       options.folder);
   DUO_TRY(track_person(options, app));
+  print_next(options.folder);
   return Exit::kOk;
 }
 

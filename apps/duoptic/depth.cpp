@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,10 +9,10 @@
 #include "command.h"
 #include "duoptic/calibrate.h"
 #include "duoptic/frame_files.h"
+#include "duoptic/interrupt.h"
+#include "duoptic/output_set.h"
 #include "duoptic/pipeline.h"
 #include "input.h"
-#include "interrupt.h"
-#include "output.h"
 #include "progress.h"
 #include "rig_report.h"
 #include "timing.h"
@@ -47,40 +46,21 @@ struct Options {
   std::vector<std::string> outputs;  // empty: all that there are, without confidence and depth-video
   std::string axes = "opencv";
   std::int64_t every = 1;
-  std::vector<std::string> windows;
+  std::vector<Window> windows;
   RigCheck check = RigCheck::kTell;
   bool confidence = false, keep_rows = false, json = false, quiet = false;
   EngineOptions engine;
 };
 
-/// "X,Y,W,H" as columns [X, X + W) of rows [Y, Y + H).
-Window parse_window(const std::string& text) {
-  int values[4] = {}, n = 0;
-  const char *at = text.data(), *const end = at + text.size();
-  for (; n < 4; ++n) {
-    const auto [rest, error] = std::from_chars(at, end, values[n]);
-    if (error != std::errc() || (rest != end && *rest != ',') || (rest == end) != (n == 3)) break;
-    at = rest + (rest != end);
-  }
-  const Window window{values[0], values[1], values[2], values[3]};
-  if (n < 4 || window.empty() || values[0] < 0 || values[1] < 0 ||
-      std::max({values[0], values[1], values[2], values[3]}) > 1 << 20)
-    throw CLI::ValidationError("--window", fmt::format("'{}' is not X,Y,W,H with a corner >= 0 and a size >= 1 px", text));
-  return window;
-}
-
 /// Each window has to have a part in the picture, or who asked is mistaken.
 Result<void> look_at(Pipeline& pipeline, const Options& options) {
   const Size size = pipeline.rectified() ? pipeline.rectified()->size : pipeline.setup().size;
-  std::vector<Window> windows;
-  for (const std::string& text : options.windows) {
-    windows.push_back(parse_window(text));
-    if (windows.back().within(size).empty())
+  for (const Window& window : options.windows)
+    if (window.within(size).empty())
       return Error{ErrorCode::kBadInput,
-                   fmt::format("look at --window {}: it lies outside the rectified left picture, which is {}x{}", text,
-                               size.width, size.height)};
-  }
-  pipeline.look_at(windows);
+                   fmt::format("look at --window {},{},{},{}: it lies outside the rectified left picture, which is {}x{}",
+                               window.x, window.y, window.width, window.height, size.width, size.height)};
+  pipeline.look_at(options.windows);
   return {};
 }
 
@@ -165,8 +145,7 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
   const bool in_one = files.has(FrameOutput::kDepthVideo), each = files.outputs.size() > (in_one ? 1 : 0);
   DepthOfAll depth_of_all;
   Progress progress(app, pipeline.count(), options.quiet);
-  std::optional<Interrupt> interrupt;
-  if (pipeline.live()) interrupt.emplace();
+  if (pipeline.live()) Interrupt::is_the_end();
   while (!Interrupt::asked()) {
     DUO_TRY_ASSIGN(summary.end, pipeline.next());
     say_rig_news(app, pipeline);
@@ -299,7 +278,7 @@ Command add(CLI::App& app) {
   options->input.add_to(*sub);
   CLI::Option* most = sub->add_option("--max-disparity", options->max_disparity, "Searches 0 .. N-1 px")
                           ->type_name("N")
-                          ->check(CLI::Range(1, Engine::kMaxDisparity))
+                          ->check(within(1, Engine::kMaxDisparity))
                           ->capture_default_str();
   sub->add_option("--near", options->near_m, "Searches as far as something at this distance needs, by the rig")
       ->type_name("METRES")
@@ -320,18 +299,13 @@ Command add(CLI::App& app) {
   sub->add_option("-o,--output", options->folder, "Folder for the results")->type_name("DIR")->capture_default_str();
   sub->add_option("--every", options->every, "Of a video, only every N-th frame")
       ->type_name("N")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
+      ->check(within(std::int64_t{1}, std::int64_t{1} << 40))
       ->capture_default_str();
-  sub->add_option("--window", options->windows,
-                  "Only these pixels of the rectified left picture matter, with the values they would have without it; may be "
-                  "repeated")
-      ->type_name("X,Y,W,H")
-      ->check(CLI::Validator(
-          [](std::string& text) {
-            parse_window(text);
-            return std::string();
-          },
-          ""));
+  add_window_option(
+      *sub, "--window",
+      "Only these pixels of the rectified left picture matter, with the values they would have without it; may be "
+      "repeated",
+      [options](Window window) { options->windows.push_back(window); });
   add_strict_option(*sub, options->check);
   options->engine.add_to(*sub);
   sub->add_flag("--confidence", options->confidence,

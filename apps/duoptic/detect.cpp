@@ -8,11 +8,11 @@
 
 #include "command.h"
 #include "duoptic/detector.h"
+#include "duoptic/interrupt.h"
+#include "duoptic/output_set.h"
 #include "duoptic/paint.h"
 #include "duoptic/sink.h"
 #include "duoptic/source.h"
-#include "interrupt.h"
-#include "output.h"
 #include "progress.h"
 
 namespace duo::app::detect {
@@ -86,8 +86,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(const std::unique_ptr<Source> source, open_source(options.input));
   PeopleFinder finder(*detector, {.hands = options.hands});
   Progress progress(app, source->count(), options.quiet || source->still());
-  std::optional<Interrupt> interrupt;
-  if (source->live()) interrupt.emplace();
+  if (source->live()) Interrupt::is_the_end();
 
   Next end = Next::kEnd;
   std::int64_t pictures = 0, with_people = 0;
@@ -143,7 +142,7 @@ Command add(CLI::App& app) {
       })
       ->capture_default_str();
   sub->add_option("--threads", options->threads, "Threads; results do not depend on them")
-      ->check(CLI::Range(1, 256))
+      ->check(within(1, 256))
       ->capture_default_str();
   sub->add_flag("--json", options->json, "Print what was found as JSON, a line for each picture");
   sub->add_flag("-q,--quiet", options->quiet, "Print no summary");

@@ -9,10 +9,11 @@
 #include <set>
 
 #include "command.h"
+#include "duoptic/interrupt.h"
+#include "duoptic/output_set.h"
+#include "duoptic/peers.h"
 #include "duoptic/sink.h"
 #include "eval_clip.h"
-#include "output.h"
-#include "peers.h"
 #include "timing.h"
 
 namespace duo::app::eval {
@@ -215,6 +216,7 @@ Result<std::vector<MethodScores>> score_contest(const Contest& contest, const st
 }
 
 Result<Exit> run_perturbed(const Options& options) {
+  Interrupt::end_at_once();
   DUO_TRY_ASSIGN(const auto folders, find_scenes({options.folders.begin(), options.folders.end()}));
   std::vector<StereoScene> scenes;
   for (const fs::path& folder : folders) {
@@ -258,6 +260,7 @@ Result<Exit> run_perturbed(const Options& options) {
 }
 
 Result<Exit> run(const Options& options) {
+  if (options.output.empty()) Interrupt::end_at_once();
   DUO_TRY_ASSIGN(const auto folders, find_scenes({options.folders.begin(), options.folders.end()}));
   // Ours as asked for; then, where that leaves holes, filled by ourselves; then the peers.
   std::vector<EngineOptions> ours = {options.engine};
@@ -268,6 +271,7 @@ Result<Exit> run(const Options& options) {
   if (!options.no_peers)
     for (const Peer& peer : accuracy_peers()) methods.push_back({fmt::format("OpenCV {}", peer.name), {}});
   for (const fs::path& folder : folders) {
+    if (Interrupt::asked()) return stopped("all scenes were scored");
     DUO_TRY_ASSIGN(const StereoScene scene, load_scene(folder));
     std::vector<Image<float>> d_px;
     for (std::size_t i = 0; i < ours.size(); ++i) {

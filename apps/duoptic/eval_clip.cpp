@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "duoptic/interrupt.h"
 #include "eval_clip.h"
 #include "input.h"
 
@@ -106,6 +107,7 @@ void print(const std::vector<ClipScore>& scores) {
 namespace {
 
 Result<Exit> run(const Options& options) {
+  Interrupt::end_at_once();
   std::vector<ClipScore> scores;
   std::vector<JointId> joints;
   for (const std::string& name : options.joints) {
@@ -154,7 +156,7 @@ Command add(CLI::App& eval) {
       ->allow_extra_args(false);
   sub->add_option("--jitter", options->jitter_px, "Moves each click by PX, as a hand would")
       ->type_name("PX")
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(within(0.0, 1000.0));
   sub->add_flag("--compare", options->compare, "Every tracker, one after the other");
   sub->add_flag("--json", options->json, "Print the scores as JSON");
   sub->footer(kFooter);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "duoptic/interrupt.h"
 #include "rig_report.h"
 
 namespace duo::app {
@@ -27,10 +28,11 @@ void add_from_scene_options(CLI::App& app, FromSceneOptions& options) {
       ->type_name("RIG");
   app.add_option("--baseline-m", options.baseline_m, "With --from-scene: from lens to lens; without it that of --intrinsics")
       ->type_name("M")
-      ->check(CLI::Range(0.01, 5.0));
+      ->check(within(0.01, 5.0));
 }
 
 Result<Exit> run_from_scene(const FromSceneOptions& options, const CLI::App& app) {
+  const bool prints = may_print(options.output, options.json);
   DUO_TRY_ASSIGN(const std::optional<Rig> lenses, read_lenses(options));
   DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right, options.input.wish()));
   const double baseline_m = options.baseline_m ? *options.baseline_m : lenses ? lenses->baseline_m() : kGuessedBaseline_m;
@@ -41,12 +43,13 @@ Result<Exit> run_from_scene(const FromSceneOptions& options, const CLI::App& app
         fmt::format("no rig fits this scene: its rows stay {:.2f} px off{}; show a scene with texture at several distances, "
                     "or calibrate with a board",
                     found.after.row_px, lenses ? ", so the intrinsics may belong to other cameras" : "")};
+  if (Interrupt::asked()) return stopped("the rig was written");
   found.rig.date = date_now();
   DUO_TRY(save_rig(found.rig, options.output));
   if (options.json) {
     const nlohmann::json out = {{"rig", to_json(found.rig)}, {"scene", to_json(found.after)}, {"file", options.output}};
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-  } else {
+  } else if (prints) {
     fmt::print("rig      {}\n{}verdict  {}; written to {}\n", describe(found.rig), describe(found.after),
                name_of(found.after.verdict), options.output);
   }

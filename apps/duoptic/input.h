@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "command.h"
 #include "duoptic/source.h"
 
 namespace duo::app {
@@ -29,7 +30,7 @@ struct InputOptions {
                    "Of two videos: how much later than their times say the right pictures were taken; the right camera began "
                    "later: more than 0")
         ->type_name("MS")
-        ->check(CLI::Range(-kMostSkew_ms, kMostSkew_ms));
+        ->check(within(-kMostSkew_ms, kMostSkew_ms));
     app.add_option("--layout", layout, "Of one file with both views: where they are; without it what the file says")
         ->transform(CLI::Transformer(std::map<std::string, ViewLayout>{{"side-by-side", ViewLayout::kSideBySide},
                                                                        {"right-left", ViewLayout::kRightLeft},

@@ -5,9 +5,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <thread>
 
 #include "command.h"
+#include "duoptic/stdout.h"
 
 namespace duo::app {
 namespace {
@@ -37,18 +39,6 @@ std::pair<std::string, double> parse_parameter(const std::string& text) {
   if (equals == std::string::npos || error != std::errc() || rest != end)
     throw CLI::ValidationError("--set", fmt::format("'{}' is not NAME=VALUE with a number", text));
   return {text.substr(0, equals), value};
-}
-
-/// Every parameter of every matcher, a line each, from the matchers' own tables; where it would bury the other options, one line.
-std::string parameter_help(const CLI::App& app) {
-  if (app.get_name() != "depth") return "Overrides one parameter of the preset, see duoptic depth --help; may be repeated";
-  std::string text = "Overrides one parameter of the preset; may be repeated:";
-  for (const std::string& matcher : matcher_names())
-    if (const auto parameters = matcher_parameters(matcher, "default"))
-      for (const ParameterInfo& p : *parameters)
-        text += fmt::format("\n  {}: {} {}..{}{}{}: {} [{}]", matcher, p.name, p.min, p.max, p.unit.empty() ? "" : " ", p.unit,
-                            p.help, p.value);
-  return text;
 }
 
 std::string preset_help() {
@@ -82,13 +72,14 @@ void EngineOptions::add_to(CLI::App& app) {
       ->check(known_engine())
       ->capture_default_str();
   app.add_option("--threads", threads, "Number of threads; the result does not depend on it")
-      ->check(CLI::Range(1, 256))
+      ->check(within(1, 256))
       ->capture_default_str();
   const CLI::Option* method = app.add_option("--matcher", matcher, "Stereo method; without it, the one that has the preset")
                                   ->check(CLI::IsMember(matcher_names()))
                                   ->capture_default_str();
   app.add_option("--preset", preset, preset_help())->capture_default_str();
-  app.add_option("--set", set, parameter_help(app))->type_name("NAME=VALUE");
+  app.add_option("--set", set, "Overrides one parameter of the preset; may be repeated; --help-all lists them")
+      ->type_name("NAME=VALUE");
   app.add_option("--denoise", denoise, "Before rectification; auto: gaussian for raw pictures, none for rectified ones")
       ->check(CLI::IsMember(denoise_names))
       ->capture_default_str();
@@ -126,16 +117,72 @@ Setup EngineOptions::setup() const {
   return setup;
 }
 
-CLI::Validator above_zero() {
-  return {[](std::string& text) {
-            double value = 0;
-            const char* end = text.data() + text.size();
-            const auto [rest, error] = std::from_chars(text.data(), end, value);
-            return error == std::errc() && rest == end && std::isfinite(value) && value > 0
+namespace {
+
+template <class T>
+std::optional<T> number_in(const std::string& text) {
+  T value = 0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data() + (text.starts_with('+') ? 1 : 0), end, value);
+  return error == std::errc() && rest == end ? std::optional(value) : std::nullopt;
+}
+
+template <class T>
+CLI::Validator in_range(T least, T most, const char* kind) {
+  return {[=](std::string& text) {
+            const auto value = number_in<T>(text);
+            return value && *value >= least && *value <= most
                        ? std::string()
-                       : fmt::format("'{}' is not a number above 0, like 0.5", text);
+                       : fmt::format("'{}' is not a {} from {} to {}", text, kind, least, most);
           },
           ""};
+}
+
+}  // namespace
+
+CLI::Validator within(double least, double most) { return in_range(least, most, "number"); }
+CLI::Validator within(int least, int most) { return in_range(least, most, "whole number"); }
+CLI::Validator within(std::int64_t least, std::int64_t most) { return in_range(least, most, "whole number"); }
+
+CLI::Validator above_zero() {
+  return {[](std::string& text) {
+            const auto value = number_in<double>(text);
+            return value && std::isfinite(*value) && *value > 0 ? std::string()
+                                                                : fmt::format("'{}' is not a number above 0, like 0.5", text);
+          },
+          ""};
+}
+
+namespace {
+
+/// "X,Y,W,H" as columns [X, X + W) of rows [Y, Y + H).
+Window parse_window(const char* option, const std::string& text) {
+  int values[4] = {}, n = 0;
+  const char *at = text.data(), *const end = at + text.size();
+  for (; n < 4; ++n) {
+    const auto [rest, error] = std::from_chars(at, end, values[n]);
+    if (error != std::errc() || (rest != end && *rest != ',') || (rest == end) != (n == 3)) break;
+    at = rest + (rest != end);
+  }
+  const Window window{values[0], values[1], values[2], values[3]};
+  if (n < 4 || window.empty() || values[0] < 0 || values[1] < 0 ||
+      std::max({values[0], values[1], values[2], values[3]}) > 1 << 20)
+    throw CLI::ValidationError(option, fmt::format("'{}' is not X,Y,W,H with a corner >= 0 and a size >= 1 px", text));
+  return window;
+}
+
+}  // namespace
+
+CLI::Option* add_window_option(CLI::App& app, const char* name, const char* help, const std::function<void(Window)>& take) {
+  const auto parse = [=](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) take(parse_window(name, text));
+  };
+  return app.add_option_function<std::vector<std::string>>(name, parse, help)->type_name("X,Y,W,H")->allow_extra_args(false);
+}
+
+bool may_print(const std::string& output, bool json) {
+  if (is_stdout(output) && json) throw CLI::ValidationError("--json", "both it and --output would go to stdout");
+  return !is_stdout(output);
 }
 
 CLI::Option* add_size_option(CLI::App& app, Size& size, const char* help) {

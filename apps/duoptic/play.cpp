@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "duoptic/output_set.h"
 #include "duoptic/recording.h"
 #include "duoptic/rig.h"
-#include "output.h"
 #include "rig_report.h"
 
 namespace duo::app::play {

@@ -4,9 +4,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "duoptic/interrupt.h"
 #include "duoptic/pipeline.h"
 #include "input.h"
-#include "interrupt.h"
 #include "progress.h"
 #include "rig_report.h"
 #include "timing.h"
@@ -35,8 +35,8 @@ struct Options {
 
 /// Up to the end of the source, the time that was asked for, or Ctrl-C. Live, that time is the clock's: cameras may be away.
 Result<Next> record_all(Pipeline& pipeline, const Options& options, const CLI::App& app) {
-  const Interrupt interrupt;
   const double start_ms = clock_ms(CLOCK_MONOTONIC);
+  if (pipeline.live()) Interrupt::is_the_end();
   const bool by_clock = pipeline.live() && options.seconds > 0;
   constexpr double kGrace_ms = 300;  // the last pairs are on their way
   Progress progress(app, pipeline.count(), options.quiet);

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "command.h"
+#include "duoptic/interrupt.h"
 #include "duoptic/rig_files.h"
 #include "duoptic/rig_health.h"
 #include "input.h"
@@ -63,6 +64,7 @@ void print_json(const nlohmann::json& json) {
 }
 
 Result<Exit> check(const Options& options, const CLI::App& app) {
+  Interrupt::end_at_once();
   DUO_TRY_ASSIGN(const Rig rig, load_rig(options.rig));
   const std::vector<RigDoubt> doubts = rig_doubts(rig);
   std::optional<SceneHealth> scene;
@@ -88,11 +90,13 @@ Result<Exit> check(const Options& options, const CLI::App& app) {
 }
 
 Result<Exit> refine(const Options& options, const CLI::App& app) {
+  const bool prints = may_print(options.output, options.json);
   DUO_TRY_ASSIGN(const Rig rig, load_rig(options.rig));
   DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.left, options.right, options.input.wish(rig)));
   DUO_TRY_ASSIGN(SceneRig found, refine_rig(rig, *pairs, options.threads));
   if (!(found.rig.right_from_left == rig.right_from_left)) found.rig.date = date_now();
   const bool useful = found.after.verdict != RigVerdict::kRecalibrate;
+  if (Interrupt::asked()) return stopped("the rig was written");
   if (useful && !options.output.empty()) DUO_TRY(save_rig(found.rig, options.output));
   if (options.json) {
     print_json({{"verdict", name_of(found.after.verdict)},
@@ -100,7 +104,7 @@ Result<Exit> refine(const Options& options, const CLI::App& app) {
                 {"after", to_json(found.after)},
                 {"rig", to_json(found.rig)},
                 {"file", useful ? nlohmann::json(options.output) : nlohmann::json()}});
-  } else {
+  } else if (prints) {
     fmt::print("before   {}\n{}after    {}\n{}", name_of(found.before.verdict), describe(found.before),
                name_of(found.after.verdict), describe(found.after));
     if (useful) fmt::print("{}\n", options.output.empty() ? "nothing written (no -o)" : "written to " + options.output);
@@ -121,11 +125,12 @@ Result<Exit> refine(const Options& options, const CLI::App& app) {
 }
 
 Result<Exit> import_file(const Options& options, const CLI::App& app) {
+  const bool prints = may_print(options.output, options.json);
   DUO_TRY_ASSIGN(const RigImport read, import_rig(options.left, options.right, options.size));
   DUO_TRY(save_rig(read.rig, options.output));
   if (options.json)
     print_json({{"rig", to_json(read.rig)}, {"file", options.output}, {"note", read.note}});
-  else
+  else if (prints)
     fmt::print("{}: {}\n", options.output, describe(read.rig));
   if (!read.note.empty()) say(app, "note: " + read.note);
   return Exit::kOk;
@@ -157,7 +162,7 @@ Subcommands add_subcommands(CLI::App& rig, Options& options) {
     sub.add_option("RIGHT", options.right, "Of the right camera");
     options.input.add_to(sub);
     sub.add_option("--threads", options.threads, "Threads; the result does not depend on them")
-        ->check(CLI::Range(1, 256))
+        ->check(within(1, 256))
         ->capture_default_str();
   };
   const auto add_output = [&](CLI::App& sub, const char* what, bool required) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace duo::app {
 namespace {
 
@@ -72,6 +74,17 @@ void SinkOptions::add_to(CLI::App& app) {
 
 bool SinkOptions::wants_maps() const { return !targets[kVideo].empty() || !targets[kMcap].empty(); }
 
+/// How many outputs were sent to stdout.
+std::ptrdiff_t SinkOptions::sent_to_stdout() const {
+  std::ptrdiff_t count = 0;
+  for (const auto& paths : targets) count += std::count_if(paths.begin(), paths.end(), is_stdout);
+  if (count > 1) throw CLI::ValidationError("stdout", "takes one output; give a file to each of the others");
+  return count;
+}
+
+bool SinkOptions::on_stdout() const { return lines_on_stdout() || sent_to_stdout() > 0; }
+bool SinkOptions::lines_on_stdout() const { return targets[kLines].empty() && sent_to_stdout() == 0; }
+
 Result<std::string> SinkOptions::add_sink(Pipeline& pipeline, const SinkKind& kind, const std::string& target) const {
   std::string note;
   DUO_TRY_ASSIGN(auto sink, kind.make(target, *this, pipeline.header(), note));
@@ -81,6 +94,7 @@ Result<std::string> SinkOptions::add_sink(Pipeline& pipeline, const SinkKind& ki
 
 /// JSON lines last: they may go to stdout, where they must not begin before all else could be opened.
 Result<void> SinkOptions::add_sinks(Pipeline& pipeline, const CLI::App& app) const {
+  static_cast<void>(sent_to_stdout());
   for (std::size_t i = 1; i <= targets.size(); ++i) {
     const std::size_t kind = i % targets.size();
     for (const std::string& target : targets[kind]) {

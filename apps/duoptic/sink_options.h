@@ -7,6 +7,7 @@
 
 #include "command.h"
 #include "duoptic/pipeline.h"
+#include "duoptic/stdout.h"
 
 namespace duo::app {
 
@@ -34,6 +35,11 @@ struct SinkOptions {
   void add_to(CLI::App& app);
   /// An output shows the whole frame, not people alone.
   bool wants_maps() const;
+  /// Whether an output goes to stdout: the JSON lines where nothing else is sent there.
+  ///
+  /// Errors  thrown as usage: two outputs do
+  bool on_stdout() const;
+  bool lines_on_stdout() const;
   /// One more output of a running pipeline, called `target`.
   ///
   /// Returns  what its user should know of it, or ""
@@ -43,6 +49,9 @@ struct SinkOptions {
   ///
   /// Errors  those of the kinds; an output made before leaves nothing
   Result<void> add_sinks(Pipeline& pipeline, const CLI::App& app) const;
+
+ private:
+  std::ptrdiff_t sent_to_stdout() const;
 };
 
 /// Each sink that dropped frames: ", 3 dropped by arm.mp4".

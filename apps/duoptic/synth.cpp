@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "command.h"
+#include "duoptic/interrupt.h"
 #include "duoptic/synthetic.h"
 #include "progress.h"
 
@@ -41,7 +42,8 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY(write_clip(options.clip, options.folder, options.threads, [&](int done, int all) {
     if (!progress) progress = std::make_unique<Progress>(app, all, options.quiet);
     progress->frame(done);
-    frames = all;
+    frames = done;
+    return !Interrupt::asked();
   }));
   progress.reset();
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
@@ -59,7 +61,7 @@ Command add(CLI::App& app) {
       ->check(CLI::IsMember(synthetic_scripts()))
       ->capture_default_str();
   sub->add_option("--frames", options->clip.frames, "How many, 30 a second; 0: the script once")
-      ->check(CLI::Range(0, 100000))
+      ->check(within(0, 100000))
       ->capture_default_str();
   add_size_option(*sub, options->clip.size, "Of one picture")->default_str("640x480");
   sub->add_option("--seed", options->clip.seed, "Person, clothes, room, rig and noise")->capture_default_str();
@@ -68,10 +70,10 @@ Command add(CLI::App& app) {
       ->capture_default_str();
   sub->add_option("--skew-ms", options->skew_ms, "How much later than the left one the right camera takes its pictures")
       ->type_name("MS")
-      ->check(CLI::Range(-100.0, 100.0))
+      ->check(within(-100.0, 100.0))
       ->capture_default_str();
   sub->add_option("--threads", options->threads, "Threads; the result does not depend on them")
-      ->check(CLI::Range(1, 256))
+      ->check(within(1, 256))
       ->capture_default_str();
   sub->add_flag("--quiet", options->quiet, "No progress on stderr");
   sub->add_option("-o,--output", options->folder, "Folder for the clip")->type_name("DIR")->required();

@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
+#include "duoptic/interrupt.h"
 #include "duoptic/skew_watch.h"
-#include "interrupt.h"
 #include "progress.h"
 #include "rig_report.h"
 #include "sink_options.h"
@@ -49,9 +49,6 @@ struct Options {
   TrackingOptions tracking;
   SinkOptions sinks;
 };
-
-/// JSON lines go there without -o.
-bool on_stdout(const Options& options) { return options.sinks.targets.front().empty(); }
 
 /// Says what happens to live cameras, once, to the engine, and to the recording.
 class Events {
@@ -113,7 +110,7 @@ Result<Summary> track_all(Pipeline& pipeline, Events& events, std::span<const Se
                           const CLI::App& app) {
   if (!selections.empty()) DUO_TRY(pipeline.select(selections));
   DUO_TRY(options.sinks.add_sinks(pipeline, app));
-  if (on_stdout(options)) DUO_TRY(options.sinks.add_sink(pipeline, sink_kinds().front(), ""));
+  if (options.sinks.lines_on_stdout()) DUO_TRY(options.sinks.add_sink(pipeline, sink_kinds().front(), ""));
   Summary summary;
   Progress progress(app, pipeline.count(), options.quiet);
   SkewWatch skew(pipeline.header().rectified.baseline_m);
@@ -178,8 +175,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   setup.check = options.check;
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
   if (!options.record.empty()) DUO_TRY(pipeline.record(options.record, to_record));
-  std::optional<Interrupt> interrupt;
-  if (pipeline.live()) interrupt.emplace();
+  if (pipeline.live()) Interrupt::is_the_end();
   Events events(app);
   DUO_TRY(first_frame(pipeline, events, options.at_frame, options.left));
   Result<Summary> summary = Summary{};
@@ -189,7 +185,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   // stdout belongs to the lines when they go there.
   if (options.stats)
     say(app, text_of(*summary, times.wall_ms / 1000, pipeline, options));
-  else if (!options.quiet && !on_stdout(options))
+  else if (!options.quiet && !options.sinks.on_stdout())
     fmt::print("{}\n", text_of(*summary, times.wall_ms / 1000, pipeline, options));
   if (const std::string warning = pipeline.warning(); !pipeline.live() && !warning.empty()) say(app, "warning: " + warning);
   if (const auto failure = pipeline.recording_failure()) return *failure;
@@ -217,7 +213,7 @@ Command add(CLI::App& app) {
       ->capture_default_str();
   sub->add_option("--at-frame", options->at_frame, "The frame of the clicks; those before it are skipped")
       ->type_name("N")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
+      ->check(within(std::int64_t{0}, std::int64_t{1} << 40))
       ->capture_default_str();
   options->input.add_to(*sub);
   options->sinks.add_to(*sub);

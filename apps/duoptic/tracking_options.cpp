@@ -15,7 +15,7 @@ void TrackingOptions::add_to(CLI::App& app) {
          fmt::format("Searches disparities of 0 .. N-1 px; without it, down to a distance of {} m, with N of {} at most",
                      kNearest_m, kMostDisparities))
       ->type_name("N")
-      ->check(CLI::Range(1, Engine::kMaxDisparity));
+      ->check(within(1, Engine::kMaxDisparity));
   app.add_option(
          "--tracker", tracker,
          "body: whole people, without clicks; arm: hand, elbow and shoulder that are clicked, also while they are hidden;\n"

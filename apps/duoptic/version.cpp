@@ -7,7 +7,7 @@
 
 #include "command.h"
 #include "duoptic/devices.h"
-#include "peers.h"
+#include "duoptic/peers.h"
 
 namespace duo::app::version {
 namespace {

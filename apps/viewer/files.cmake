@@ -1,10 +1,10 @@
 # The window of `duoptic view`: part of the tool, and the only code that sees GLFW, ImGui and OpenGL.
 set(dir ${PROJECT_SOURCE_DIR}/apps/viewer)
 target_sources(duoptic_tool PRIVATE
-  ${dir}/clicks.cpp
   ${dir}/panels.cpp
   ${dir}/player.cpp
   ${dir}/sidebar.cpp
+  ${dir}/start.cpp
   ${dir}/style.cpp
   ${dir}/texture.cpp
   ${dir}/view.cpp

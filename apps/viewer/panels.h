@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "clicks.h"
+#include "duoptic/clicks.h"
 #include "duoptic/paint.h"
 #include "player.h"
 #include "style.h"

@@ -8,6 +8,7 @@
 #include <ctime>
 #include <filesystem>
 
+#include "duoptic/one_pair.h"
 #include "rig_report.h"
 #include "timing.h"
 
@@ -22,27 +23,6 @@ std::string dated_name(const std::string& ending) {
   for (int i = 2; std::filesystem::exists(name, ignored); ++i) name = fmt::format("{}_{}{}", stem, i, ending);
   return name;
 }
-
-/// One pair, as a stream.
-class OnePair final : public PairSource {
- public:
-  explicit OnePair(Pair pair) : pair_(std::move(pair)), size_(pair_.left.pixels.size()) {}
-  Size size() const override { return size_; }
-  std::int64_t count() const override { return 1; }
-  bool still() const override { return true; }
-  Result<Next> next(Pair& into) override {
-    if (given_) return Next::kEnd;
-    given_ = true;
-    into = std::move(pair_);
-    return Next::kNew;
-  }
-  std::string warning() const override { return {}; }
-
- private:
-  Pair pair_;
-  Size size_;
-  bool given_ = false;
-};
 
 double now_ms() { return clock_ms(CLOCK_MONOTONIC); }
 
@@ -195,8 +175,8 @@ void Player::check_rig() {
     const Pair& last = *pipeline_->pair();
     const auto pair = std::make_shared<Pair>(Pair{{last.left.pixels.clone()}, {last.right.pixels.clone()}, last.sequence});
     auto checking = Worker::start("look at the pair", [this, pair](const std::stop_token&) -> Result<void> {
-      OnePair one(std::move(*pair));
-      auto health = scene_health(rig_, one, 1);
+      const auto one = one_pair(std::move(*pair));
+      auto health = scene_health(rig_, *one, 1);
       {
         const std::lock_guard lock(mutex_);
         status_.health = std::move(health);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "clicks.h"
+#include "duoptic/clicks.h"
 #include "duoptic/engine.h"
 #include "player.h"
 

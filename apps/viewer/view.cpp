@@ -8,11 +8,14 @@
 #include <utility>
 
 #include "command.h"
-#include "interrupt.h"
+#include "duoptic/frame_files.h"
+#include "duoptic/interrupt.h"
+#include "duoptic/source_choice.h"
 #include "panels.h"
 #include "player.h"
 #include "rig_report.h"
 #include "sidebar.h"
+#include "start.h"
 #include "window.h"
 
 namespace duo::app::view {
@@ -22,9 +25,10 @@ constexpr char kFooter[] =
     "People are found and tracked by themselves. With --tracker arm click hand, elbow and shoulder in the left camera's "
     "picture,\n"
     "which stands still meanwhile; then the arm is tracked.\n"
-    "Keys: Space pause, Right one frame, Backspace undo a click, R record, Home restart, F12 screenshot, Q close.\n"
+    "Keys: F1 in the window shows them.\n"
     "Tracked frames are written and sent as track does, by the same options or the boxes in the window.\n\n"
     "Examples:\n"
+    "  duoptic view                                                                  asks what to look at\n"
     "  duoptic view synthetic                                                        a rendered person, live\n"
     "  duoptic view camera:0 camera:2 --rig rig.json\n"
     "  duoptic view left.avi right.avi --rig rig.json --loop\n"
@@ -33,6 +37,11 @@ constexpr char kFooter[] =
 
 constexpr Size kWindow = {1440, 860};
 
+constexpr std::pair<const char*, const char*> kKeys[] = {
+    {"Space", "pause, play"}, {"Right", "next frame"},       {"Home", "play a file from its start"},
+    {"R", "record, stop"},    {"Backspace", "undo a click"}, {"S", "points as duoptic_view_001.ply"},
+    {"F12", "window as PNG"}, {"F1", "these keys"},          {"Q", "close"}};
+
 struct Options {
   PlayerOptions player;
   std::string rig, screenshot;
@@ -40,10 +49,12 @@ struct Options {
   bool paused = false;
 };
 
-std::filesystem::path free_name() {
+/// "duoptic_view_001" and so on.
+std::string free_name(const char* ending) {
   std::error_code ignored;
   for (int i = 1;; ++i)
-    if (const std::string name = fmt::format("duoptic_view_{:03}.png", i); !std::filesystem::exists(name, ignored)) return name;
+    if (const std::string name = fmt::format("duoptic_view_{:03}{}", i, ending); !std::filesystem::exists(name, ignored))
+      return name;
 }
 
 class Viewer {
@@ -109,6 +120,7 @@ class Viewer {
     ImGui::EndChild();
     ImGui::PopStyleVar();
     ImGui::End();
+    draw_keys();
     take_keys();
     if (!ImGui::IsAnyMouseDown()) put_title();  // who reads it may click
     return {};
@@ -146,15 +158,40 @@ class Viewer {
       if (key == GLFW_KEY_R) player_.record(!player_.recording().on);
       if (key == GLFW_KEY_HOME) player_.restart();
       if (key == GLFW_KEY_F12) window_.want_screenshot();
+      if (key == GLFW_KEY_F1) help_ = !help_;
+      if (key == GLFW_KEY_S && shown_) keep_points();
       if (key == GLFW_KEY_Q) done_ = true;
     }
+  }
+
+  /// The points of what is shown, as a PLY.
+  void keep_points() {
+    const std::string name = free_name(".ply");
+    FrameFiles files{.outputs = {FrameOutput::kCloud}};
+    files.cloud.metric = player_.header().metric;
+    const auto written =
+        write_frame(*shown_->frame, player_.header().rectified, files, [&](const std::string&) { return name; });
+    note_ = written ? "written: " + name : written.error().what;
+  }
+
+  void draw_keys() const {
+    if (!help_) return;
+    ImGui::SetNextWindowPos({40 * window_.scale(), 60 * window_.scale()});
+    ImGui::Begin("Keys", nullptr,
+                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings);
+    for (const auto& [key, does] : kKeys) {
+      ImGui::TextUnformatted(key);
+      ImGui::SameLine(110 * window_.scale());
+      ImGui::TextDisabled("%s", does);
+    }
+    ImGui::End();
   }
 
   Result<void> keep_screenshot() {
     const auto picture = window_.screenshot();
     if (!picture) return {};
     const bool asked = !options_.screenshot.empty() && shown_ && shown_->number >= options_.after;
-    const std::filesystem::path path = asked ? std::filesystem::path(options_.screenshot) : free_name();
+    const std::filesystem::path path = asked ? options_.screenshot : free_name(".png");
     const auto written = write_png(*picture, path);
     note_ = written ? "written: " + path.string() : written.error().what;
     if (!asked) return {};
@@ -181,20 +218,53 @@ class Viewer {
   std::shared_ptr<const Shown> shown_;
   std::string note_;
   int refused_ = 0;  // selections, so far
-  bool held_ = false, resume_ = false, done_ = false;
+  bool held_ = false, resume_ = false, done_ = false, help_ = false;
 };
 
-Result<Exit> run(Options options, const CLI::App& app) {
+Result<std::unique_ptr<Player>> open_player(Options& options, const CLI::App& app) {
+  options.player.rig.reset();
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(options.player.rig, load_rig(options.rig));
   }
+  return Player::open(options.player, app);
+}
+
+Result<std::unique_ptr<Window>> open_window() {
+  DUO_TRY_ASSIGN(auto window, Window::open("duoptic view", kWindow));
+  set_style(window->scale());
+  return window;
+}
+
+/// Until what was chosen can be shown; null when the window was closed.
+Result<std::unique_ptr<Player>> choose_player(Options& options, Window& window, const CLI::App& app) {
+  StartPage page(window, options.rig);
+  std::string problem;
+  while (const auto choice = page.choose(problem)) {
+    options.player.left = choice->left;
+    options.player.right = choice->right;
+    options.rig = choice->rig;
+    auto player = open_player(options, app);
+    if (player) return player;
+    problem = player.error().what;
+  }
+  return std::unique_ptr<Player>();
+}
+
+Result<Exit> run(Options options, const CLI::App& app) {
+  Interrupt::is_the_end();  // it closes the window as its user would: lines are completed
   options.player.on_news = Window::wake;
   std::unique_ptr<Window> window;  // outlives the player, which wakes it
-  DUO_TRY_ASSIGN(const auto player, Player::open(options.player, app));
-  DUO_TRY_ASSIGN(window, Window::open("duoptic view", kWindow));
-  set_style(window->scale());
+  std::unique_ptr<Player> player;
+  if (options.player.left.empty()) {
+    DUO_TRY_ASSIGN(window, open_window());
+    DUO_TRY_ASSIGN(player, choose_player(options, *window, app));
+    if (!player) return Exit::kOk;
+  } else {
+    DUO_TRY_ASSIGN(player, open_player(options, app));
+    DUO_TRY_ASSIGN(window, open_window());
+  }
+  remember_source({options.player.left, options.player.right, options.rig});
   DUO_TRY_ASSIGN(Sidebar sidebar, Sidebar::make(options.player, *player, window->device(), window->scale()));
-  const Interrupt interrupt;  // closes the window as its user would: lines are completed
   const Result<void> shown = Viewer(options, *window, *player, std::move(sidebar)).run();
   DUO_TRY_ASSIGN(const Exit exit, player->finish());
   if (!player->warning().empty()) say(app, "warning: " + player->warning());
@@ -209,8 +279,7 @@ Command add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   sub->add_option("LEFT", options->player.left,
                   "Picture or video of the left camera, the camera itself (camera:0, /dev/video0, http://, rtsp://, gst:),\nor "
-                  "synthetic; alone: both views side by side")
-      ->required();
+                  "synthetic; alone: both views side by side. Without it the window asks");
   sub->add_option("RIGHT", options->player.right, "The same of the right camera");
   sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); left out: the source's own");
   options->player.input.add_to(*sub);
@@ -222,7 +291,7 @@ Command add(CLI::App& app) {
                           ->excludes(loop);
   sub->add_option("--after", options->after, "The frame of the screenshot")
       ->type_name("N")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
+      ->check(within(std::int64_t{0}, std::int64_t{1} << 40))
       ->needs(shot)
       ->capture_default_str();
   add_strict_option(*sub, options->player.check);

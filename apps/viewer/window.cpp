@@ -113,6 +113,9 @@ Result<void> Window::create_window(const std::string& title, Size size) {
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
     if (action == GLFW_PRESS) static_cast<Window*>(glfwGetWindowUserPointer(window))->keys_.push_back(key);
   });
+  glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
+    static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_.assign(paths, paths + count);
+  });
   glfwSetWindowSizeLimits(window_, 640, 420, GLFW_DONT_CARE, GLFW_DONT_CARE);
   float across = 1, down = 1;
   glfwGetWindowContentScale(window_, &across, &down);

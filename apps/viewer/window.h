@@ -32,6 +32,8 @@ class Window {
   bool closing() const;
   /// What was pressed since the last call, as GLFW_KEY_*; without those that ImGui's text fields take.
   std::vector<int> keys();
+  /// Files that were dropped onto it since the last call.
+  std::vector<std::string> dropped() { return std::exchange(dropped_, {}); }
   void set_title(const std::string& title);
   /// How much larger than 96 dots per inch letters and lines shall be.
   float scale() const { return scale_; }
@@ -56,6 +58,7 @@ class Window {
   float scale_ = 1;
   std::string title_;
   std::vector<int> keys_;
+  std::vector<std::string> dropped_;
   bool wanted_ = false;
   std::optional<Image<Rgb8>> screenshot_;
 };

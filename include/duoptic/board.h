@@ -55,8 +55,14 @@ Result<Paper> parse_paper(std::string_view name);
 /// The largest square of whole millimetres with which the board fits the paper; 0 = none does.
 double largest_square_m(const Board& board, const Paper& paper);
 
+/// The board as it is printed where nobody says how large its squares are, and so as it is calibrated with: the largest whole
+/// ones that fit.
+///
+/// Errors  those of parse_board(); squares below 1 mm
+Result<Board> largest_board(std::string_view text, const Paper& paper);
+
 /// Writes the board for printing, in true scale, with its name, a ruler of 100 mm and how to measure it. The ending of `path`
-/// decides: SVG and PDF have one vector path; PNG has 10 pixels a millimetre and says so.
+/// decides: SVG and PDF have one vector path; PNG has 10 pixels a millimetre and says so. On stdout it is a PDF.
 ///
 /// Errors  another ending; the board does not fit the paper; those of every written file
 Result<void> write_board(const Board& board, const Paper& paper, const std::filesystem::path& path);

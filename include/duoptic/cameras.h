@@ -1,6 +1,7 @@
 // Cameras that are plugged in: what they are called and what they give.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -35,5 +36,17 @@ Result<std::vector<CameraInfo>> find_cameras();
 ///
 /// Errors  they are one camera; one has no format that can be read at this size
 Result<std::string> common_format(const CameraInfo& left, const CameraInfo& right, const CameraWish& wish);
+
+/// Two cameras by their place in a list, and the format that both can give together.
+struct CameraPair {
+  std::size_t left, right;
+  std::string format;
+};
+
+/// All that can, those of one model first: they see alike.
+std::vector<CameraPair> camera_pairs(const std::vector<CameraInfo>& cameras, const CameraWish& wish);
+
+/// "camera:0" for /dev/video0, as open_source() takes it.
+std::string source_name(const CameraInfo& camera);
 
 }  // namespace duo

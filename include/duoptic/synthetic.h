@@ -61,7 +61,7 @@ struct SyntheticClipSetup {
 /// Where a joint is. It lies inside the body: what a camera sees of it is nearer.
 struct SyntheticJoint {
   JointId id = JointId::kPelvis;
-  Vec3 p_in_left_m;  // in the raw left camera
+  Vec3 p_in_left_m;                                              // in the raw left camera
   std::optional<std::array<double, 2>> uv_left_px, uv_right_px;  // in the raw pictures; none far outside of them
   bool in_left = false, in_right = false;                        // inside the picture
   bool visible_left = false, visible_right = false;              // and nothing farther in front than flesh and cloth are thick
@@ -73,11 +73,11 @@ struct SyntheticJoint {
 struct SyntheticClipFrame {
   Pair pair;
   double t_s = 0;
-  double ceiling_light = 1;  // power of the lamp
-  std::string act;           // what the arm does
+  double ceiling_light = 1;            // power of the lamp
+  std::string act;                     // what the arm does
   std::vector<SyntheticJoint> joints;  // 17: of kBody without spine, chest and feet
-  Image<float> depth_left_m;        // as in SyntheticPair
-  Image<std::uint8_t> figure_left;  // 255 where that is the person
+  Image<float> depth_left_m;           // as in SyntheticPair
+  Image<std::uint8_t> figure_left;     // 255 where that is the person
 };
 
 /// A person stands before the rig, looks at it and moves one arm.
@@ -85,7 +85,7 @@ struct SyntheticClipFrame {
 /// Frames can be asked for in any order; the same setup gives the same bits with any number of threads.
 class SyntheticClip {
  public:
-  /// Renders the still room: some seconds at 640x480.
+  /// The first frame renders the still room, too: some seconds at 640x480.
   ///
   /// Errors  unknown script, size or number of frames that cannot be
   static Result<SyntheticClip> open(const SyntheticClipSetup& setup, int threads);
@@ -116,10 +116,10 @@ std::vector<std::string> synthetic_scripts();
 
 /// Renders a clip into a new folder: left.avi and right.avi (MJPEG), calibration_truth.yml, truth.json, and every tenth frame
 /// depth/depth_NNNN.png (0.1 mm, ideal pinhole camera) with its mask depth/figure_NNNN.png. The folder appears whole or not
-/// at all; an earlier clip of that name is replaced.
+/// at all; an earlier clip of that name is replaced. Where `progress` says false the clip ends with that frame.
 ///
 /// Errors  those of SyntheticClip::open(); the name is taken by something else; a file cannot be written
 Result<void> write_clip(const SyntheticClipSetup& setup, const std::filesystem::path& folder, int threads,
-                        const std::function<void(int done, int frames)>& progress);
+                        const std::function<bool(int done, int frames)>& progress);
 
 }  // namespace duo

@@ -8,6 +8,7 @@
 #include "calib/board_page.h"
 #include "core/coded_picture.h"
 #include "core/file.h"
+#include "duoptic/stdout.h"
 
 extern "C" {
 #include <libavutil/crc.h>
@@ -133,7 +134,7 @@ std::string png_page(const BoardPage& page) {
 Result<void> write_board(const Board& board, const Paper& paper, const std::filesystem::path& path) {
   DUO_TRY_ASSIGN(const BoardPage page, lay_out_board(board, paper));
   const std::string ending = path.extension().string();
-  if (ending == ".pdf") return write_file(path, pdf_of(page));
+  if (ending == ".pdf" || is_stdout(path)) return write_file(path, pdf_of(page));
   if (ending == ".svg") return write_file(path, svg_of(page));
   if (ending == ".png") {
     const std::string png = png_page(page);

@@ -80,6 +80,14 @@ double largest_square_m(const Board& board, const Paper& paper) {
   return std::floor(best_room(board, paper).largest_square_mm(board)) / 1000;
 }
 
+Result<Board> largest_board(std::string_view text, const Paper& paper) {
+  DUO_TRY_ASSIGN(Board board, parse_board(text, 0.01));
+  board.square_m = largest_square_m(board, paper);
+  if (board.square_m > 0) return board;
+  return Error{ErrorCode::kBadInput, fmt::format("cannot print {} on {}: its squares would be below 1 mm; take fewer squares",
+                                                 board.name(), paper.name)};
+}
+
 Result<BoardPage> lay_out_board(const Board& board, const Paper& paper) {
   const Room room = best_room(board, paper);
   const double square_mm = 1000 * board.square_m, width_mm = square_mm * board.columns, height_mm = square_mm * board.rows;

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,6 +10,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+
+#include "duoptic/stdout.h"
 
 namespace duo {
 namespace {
@@ -127,6 +130,26 @@ std::filesystem::path path_in(const Descriptor& folder, const std::string& name)
   return fmt::format("/proc/self/fd/{}/{}", folder.get(), name);
 }
 
+bool is_stdout(const std::filesystem::path& path) {
+  return path == "-" || path == "/dev/stdout" || path == "/dev/fd/1" || path == "/proc/self/fd/1";
+}
+
+namespace {
+
+/// What a file holds, from its first byte on, to stdout after all that was printed there.
+Result<void> pour_out(int file) {
+  std::string block(1 << 16, '\0');
+  if (std::fflush(stdout) != 0 || ::lseek(file, 0, SEEK_SET) != 0) return write_error("stdout", errno);
+  for (;;) {
+    const ssize_t n = ::read(file, block.data(), block.size());
+    if (n == 0) return {};
+    if (n < 0 || !write_all(STDOUT_FILENO, std::string_view(block).substr(0, static_cast<std::size_t>(n))))
+      return write_error("stdout", errno);
+  }
+}
+
+}  // namespace
+
 PartialFile::PartialFile(PartialFile&& other) noexcept
     : path_(std::move(other.path_)),
       folder_(std::move(other.folder_)),
@@ -153,6 +176,11 @@ Result<PartialFile> PartialFile::open(const std::filesystem::path& path) {
 }
 
 Result<void> PartialFile::create() {
+  if (is_stdout(path_)) {  // a file without a name, for libraries that go back in it
+    file_ = Descriptor(::memfd_create("stdout", MFD_CLOEXEC));
+    if (!file_.is_open()) return write_error(path_, errno);
+    return {};
+  }
   const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
   folder_ = Descriptor(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   if (!folder_.is_open()) return write_error(path_, errno);
@@ -199,6 +227,7 @@ Result<void> PartialFile::take_name(Earlier earlier) {
 }
 
 Result<void> PartialFile::publish() {
+  if (is_stdout(path_)) return pour_out(file_.get());
   // A failed close() may be the first to tell of a full disk over a network.
   if (::fsync(file_.get()) != 0 || !file_.close()) return write_error(path_, errno);
   return take_name(Earlier::kReplace);

@@ -183,8 +183,8 @@ Result<void> write_depth(SyntheticClip& clip, int index, const Staging& out) {
   return write_png(pinhole.figure, out / fmt::format("depth/figure_{:04}.png", index));
 }
 
-Result<void> write_into(SyntheticClip& clip, const Staging& out, const std::function<void(int, int)>& progress) {
-  const SyntheticClipSetup& setup = clip.setup();
+Result<void> write_into(SyntheticClip& clip, const Staging& out, const std::function<bool(int, int)>& progress) {
+  SyntheticClipSetup setup = clip.setup();
   DUO_TRY_ASSIGN(const Rectified rectified, rectified_geometry(clip.rig(), out.name()));
   DUO_TRY(write_file(out / "calibration_truth.yml", opencv_text(clip.rig(), opencv_rectified(rectified), true)));
   DUO_TRY_ASSIGN(AviWriter left, AviWriter::open(out / "left.avi", setup.size, kFramesPerSecond, kJpegQuality));
@@ -199,7 +199,7 @@ Result<void> write_into(SyntheticClip& clip, const Staging& out, const std::func
     if (events.empty() || events.back()["what"] != frame.act)
       events.push_back({{"first", i}, {"last", i}, {"what", frame.act}});
     events.back()["last"] = i;
-    if (progress) progress(i + 1, setup.frames);
+    if (progress && !progress(i + 1, setup.frames)) setup.frames = i + 1;
   }
   DUO_TRY(left.finish());
   DUO_TRY(right.finish());
@@ -210,7 +210,7 @@ Result<void> write_into(SyntheticClip& clip, const Staging& out, const std::func
 }  // namespace
 
 Result<void> write_clip(const SyntheticClipSetup& setup, const fs::path& folder, int threads,
-                        const std::function<void(int, int)>& progress) {
+                        const std::function<bool(int, int)>& progress) {
   DUO_TRY_ASSIGN(Staging out, Staging::open(folder));
   std::error_code error;
   if (!fs::create_directory(out / "depth", error)) return cannot_write(folder, error.message());

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 SyntheticClipSetup setup_of(int frames) { return {.size = {64, 48}, .seed = 2, .script = "wave", .frames = frames}; }
-const std::function<void(int, int)> kSilent;
+const std::function<bool(int, int)> kSilent;
 
 TEST(WriteClip, ReadsBackAsItWasRendered) {
   const test::TempFolder temp;
@@ -21,6 +21,7 @@ TEST(WriteClip, ReadsBackAsItWasRendered) {
   const auto written = write_clip(setup_of(12), temp / "clip", 2, [&](int done, int frames) {
     EXPECT_EQ(done, ++told);
     EXPECT_EQ(frames, 12);
+    return true;
   });
   ASSERT_TRUE(written.has_value()) << written.error().what;
   EXPECT_EQ(told, 12);
@@ -120,9 +121,22 @@ TEST(WriteClip, AppearsWholeOrNotAtAll) {
   const std::string earlier = test::bytes_of(temp / "clip/truth.json");
   ASSERT_TRUE(write_clip(setup_of(1), temp / "clip/", 1, [&](int, int) {
                 EXPECT_EQ(test::bytes_of(temp / "clip/truth.json"), earlier);
+                return true;
               }).has_value());
   EXPECT_NE(test::bytes_of(temp / "clip/truth.json"), earlier);
   EXPECT_EQ(entries(), 2);
+}
+
+TEST(WriteClip, OneThatIsEndedEarlyIsAWholeClipOfFewerFrames) {
+  const test::TempFolder temp;
+  ASSERT_TRUE(write_clip(setup_of(9), temp / "clip", 1, [](int done, int) { return done < 3; }).has_value());
+  const auto truth = nlohmann::json::parse(test::bytes_of(temp / "clip/truth.json"));
+  EXPECT_EQ(truth["frames"].size(), 3U);
+  auto pairs = open_pairs(temp / "clip/left.avi", temp / "clip/right.avi");
+  ASSERT_TRUE(pairs.has_value());
+  Pair pair;
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(*(*pairs)->next(pair), Next::kNew);
+  EXPECT_EQ(*(*pairs)->next(pair), Next::kEnd);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ target_sources(duoptic PRIVATE
   ${dir}/motion_tracks.cpp
   ${dir}/osc.cpp
   ${dir}/osc_target.cpp
+  ${dir}/output_set.cpp
   ${dir}/panel_video.cpp
   ${dir}/pfm.cpp
   ${dir}/ply.cpp

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/file.h"
+#include "duoptic/stdout.h"
 #include "duoptic/sink.h"
 #include "sinks/text_values.h"
 
@@ -126,7 +127,7 @@ Result<std::unique_ptr<Sink>> begun(std::unique_ptr<T> sink, const TrackHeader& 
 }  // namespace
 
 Result<std::unique_ptr<Sink>> make_json_lines(const std::filesystem::path& path, const TrackHeader& header) {
-  if (path.empty()) return begun(std::make_unique<ToStdout>(header.live), header);
+  if (path.empty() || is_stdout(path)) return begun(std::make_unique<ToStdout>(header.live), header);
   DUO_TRY_ASSIGN(PartialFile file, PartialFile::open(path));
   return begun(std::make_unique<ToFile>(std::move(file), header.live), header);
 }

@@ -10,6 +10,7 @@
 
 #include "core/capture_mark.h"
 #include "core/file.h"
+#include "duoptic/stdout.h"
 #include "core/libav_file.h"
 #include "duoptic/recording.h"
 #include "sinks/coded_view.h"
@@ -155,6 +156,9 @@ Recorder::~Recorder() = default;
 
 Result<Recorder> Recorder::open(const std::filesystem::path& path, const RecorderSetup& setup) {
   av_log_set_level(AV_LOG_QUIET);  // what is wrong is said in our results
+  if (is_stdout(path))
+    return Error{ErrorCode::kWriteFailed,
+                 "cannot record to stdout: a recording is completed in places already written; name a file"};
   DUO_TRY_ASSIGN(PartialFile file, PartialFile::open(path));
   struct stat there {};
   if (!setup.replace && ::lstat(path.c_str(), &there) == 0)

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "duoptic/one_pair.h"
 #include "duoptic/source.h"
 #include "sources/camera/camera.h"
 #include "sources/camera/modes.h"
@@ -65,6 +66,27 @@ Result<std::unique_ptr<PairSource>> open_both(const std::filesystem::path& path,
   return pair_files(std::move(views), 0);
 }
 
+/// One pair, as a stream.
+class OnePair final : public PairSource {
+ public:
+  explicit OnePair(Pair pair) : pair_(std::move(pair)), size_(pair_.left.pixels.size()) {}
+  Size size() const override { return size_; }
+  std::int64_t count() const override { return 1; }
+  bool still() const override { return true; }
+  Result<Next> next(Pair& into) override {
+    if (given_) return Next::kEnd;
+    given_ = true;
+    into = std::move(pair_);
+    return Next::kNew;
+  }
+  std::string warning() const override { return {}; }
+
+ private:
+  Pair pair_;
+  Size size_;
+  bool given_ = false;
+};
+
 }  // namespace
 
 Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right,
@@ -89,5 +111,7 @@ Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left
   if (left_source->live()) return make_live_pairs(std::move(left_source), std::move(right_source));
   return pair_files({{std::move(left_source), std::move(right_source)}, {left.string(), right.string()}}, wish.skew_ns);
 }
+
+std::unique_ptr<PairSource> one_pair(Pair pair) { return std::make_unique<OnePair>(std::move(pair)); }
 
 }  // namespace duo

@@ -1,5 +1,5 @@
 # Explicit names, no glob: what is not listed is not built.
-target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/trackers/raw_left.cpp ${PROJECT_SOURCE_DIR}/src/trackers/selection.cpp)
+target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/trackers/clicks.cpp ${PROJECT_SOURCE_DIR}/src/trackers/raw_left.cpp ${PROJECT_SOURCE_DIR}/src/trackers/selection.cpp)
 set(dir ${PROJECT_SOURCE_DIR}/src/trackers/arm)
 target_sources(duoptic PRIVATE
   ${dir}/arm.cpp ${dir}/arm_candidates.cpp ${dir}/arm_learn.cpp ${dir}/arm_start.cpp ${dir}/arm_tracker.cpp ${dir}/background.cpp

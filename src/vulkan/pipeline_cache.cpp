@@ -4,10 +4,9 @@
 #include <unistd.h>
 
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
-#include <system_error>
 
+#include "core/cache_file.h"
 #include "core/file.h"
 
 namespace duo::vk {
@@ -40,17 +39,7 @@ bool is_ours(const std::filesystem::path& path) {
 
 }  // namespace
 
-std::filesystem::path pipeline_file(const std::string& device_id) {
-  const char *cache = std::getenv("XDG_CACHE_HOME"), *home = std::getenv("HOME");
-  std::filesystem::path folder;
-  if (cache != nullptr && *cache == '/')
-    folder = cache;
-  else if (home != nullptr && *home == '/')
-    folder = std::filesystem::path(home) / ".cache";
-  else
-    return {};
-  return folder / "duoptic" / ("pipelines-" + device_id);
-}
+std::filesystem::path pipeline_file(const std::string& device_id) { return cache_file("pipelines-" + device_id); }
 
 std::string read_pipelines(const std::filesystem::path& file) {
   if (file.empty()) return {};
@@ -62,11 +51,8 @@ std::string read_pipelines(const std::filesystem::path& file) {
 }
 
 void write_pipelines(const std::filesystem::path& file, const std::string& data) {
-  if (file.empty() || data.empty() || data.size() > kMostBytes - kHeadBytes) return;
-  std::error_code ignored;
-  std::filesystem::create_directories(file.parent_path().parent_path(), ignored);
-  ::mkdir(file.parent_path().c_str(), 0700);
-  (void)write_file(file, head_of(data) + data);
+  if (data.empty() || data.size() > kMostBytes - kHeadBytes) return;
+  write_cache_file(file, head_of(data) + data);
 }
 
 }  // namespace duo::vk

@@ -163,7 +163,7 @@ TEST_F(CalibrateTool, SaysInOneLineWhatIsWrong) {
   expect_failure("none", "none");
   expect_failure("good/left0.png good/right0.png", "one pair of pictures is too few");
   expect_failure("good --board chess", "chessboard:9x6");
-  expect_failure("good --square-mm 0" + board, "1 to 1000 mm");
+  expect_failure("good --square-mm 0" + board, "from 1 to 1000");
   expect_failure("good --near 0", "near", kUsage);
   const Ended nowhere = run("calibrate good --quiet -o no/rig.json" + board);
   EXPECT_EQ(nowhere.exit, kOutput) << nowhere.err;

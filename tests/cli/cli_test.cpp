@@ -211,7 +211,6 @@ TEST_F(Cli, BadOptions) {
     expect_failure(pair + "--window=" + window, kUsage, std::string(window) + "' is not X,Y,W,H");
   expect_failure(pair + "--window 160,0,5,5", kInput, "outside the rectified left picture, which is 160x120");
   expect_failure("depth -o out", kUsage, "LEFT");
-  expect_failure("", kUsage, "subcommand");
   expect_failure("eval middlebury nowhere", kInput, "nowhere");
   expect_failure("bench --instructions none", kInput, "\"none\": this build has");
 }

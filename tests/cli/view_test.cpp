@@ -135,6 +135,26 @@ TEST_F(Running, ThreeClicksTrackALivePerson) {
   expect_recordings(2);
 }
 
+/// Without a source the window asks; what was shown before is on its list.
+TEST_F(Running, AloneItAsksAndRemembers) {
+  start("left.png right.png --rig rig.json");
+  wait_for_title("duoptic view");
+  press("q");
+  expect_end(0);
+  start("");
+  wait_for_title("choose a source");
+  told("xdotool windowsize " + window_ + " 640 480");
+  press("2");  // the first is the rendered person; here are no cameras
+  ASSERT_TRUE(waited([&] { return told("xdotool getwindowname " + window_).find("choose") == std::string::npos; }));
+  press("F1");
+  press("s");
+  ASSERT_TRUE(waited([] { return fs::exists(at("duoptic_view_001.ply")); }));
+  EXPECT_EQ(bytes_of(at("duoptic_view_001.ply")).rfind("ply\n", 0), 0u);
+  EXPECT_EQ(screenshot().size(), (Size{640, 480}));
+  press("q");
+  expect_end(0);
+}
+
 /// One picture of each camera is a stream that has ended when its arms are selected.
 TEST_F(Running, BothArmsOfAStillPicture) {
   start("left.png right.png --rig rig.json --tracker arm -o still.jsonl");

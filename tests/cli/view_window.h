@@ -114,7 +114,7 @@ class ViewWindow : public ::testing::Test {
   static fs::path at(const std::string& name) { return *folder_ / name; }
   static std::string display() { return "DISPLAY=:" + std::to_string(std::atoi(bytes_of(at("display.txt")).c_str())) + " "; }
   /// Drivers are unloaded before leaks are looked for, so that theirs cannot be told from ours.
-  static std::string environment() { return display() + "ASAN_OPTIONS=detect_leaks=0 "; }
+  static std::string environment() { return display() + "ASAN_OPTIONS=detect_leaks=0 XDG_CACHE_HOME='" + at("cache").string() + "' "; }
 
   /// What a command prints.
   static std::string told(const std::string& command) {

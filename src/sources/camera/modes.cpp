@@ -136,6 +136,21 @@ Result<std::string> common_format(const CameraInfo& left, const CameraInfo& righ
   return first == second ? fourcc_text(first) : fourcc_text(first) + "+" + fourcc_text(second);
 }
 
+std::vector<CameraPair> camera_pairs(const std::vector<CameraInfo>& cameras, const CameraWish& wish) {
+  std::vector<CameraPair> out;
+  for (std::size_t left = 0; left < cameras.size(); ++left)
+    for (std::size_t right = left + 1; right < cameras.size(); ++right)
+      if (const auto format = common_format(cameras[left], cameras[right], wish)) out.push_back({left, right, *format});
+  std::stable_partition(out.begin(), out.end(),
+                        [&](const CameraPair& pair) { return cameras[pair.left].name == cameras[pair.right].name; });
+  return out;
+}
+
+std::string source_name(const CameraInfo& camera) {
+  const std::string device = "/dev/video";
+  return camera.path.starts_with(device) ? "camera:" + camera.path.substr(device.size()) : camera.path;
+}
+
 std::string device_path(int number) { return fmt::format("/dev/video{}", number); }
 
 std::vector<CameraInfo> list_cameras(const SystemCalls& system, std::optional<Error>* refused) {

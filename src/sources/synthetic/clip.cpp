@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/check.h"
 #include "duoptic/synthetic.h"
@@ -101,7 +102,7 @@ struct SyntheticClip::State {
   Rig rig;
   Scene room;
   Rigid3 world_from_left, world_from_right;
-  Backdrop left, right;
+  std::optional<Backdrop> left, right;  // the still room, from the first frame on
 
   State(const SyntheticClipSetup& wanted, int threads, int arm)
       : setup(wanted),
@@ -113,9 +114,7 @@ struct SyntheticClip::State {
         rig(rig_of(mounts)),
         room(living_room(setup.seed, 0, Floor::kFree)),
         world_from_left(staging.world_from_rig * mounts.left.rig_from_camera),
-        world_from_right(staging.world_from_rig * mounts.right.rig_from_camera),
-        left(pool, room, mounts.left.camera, world_from_left),
-        right(pool, room, mounts.right.camera, world_from_right) {
+        world_from_right(staging.world_from_rig * mounts.right.rig_from_camera) {
     setup.arm = arm == kRightSide ? SyntheticArm::kRight : SyntheticArm::kLeft;
     if (setup.frames == 0) setup.frames = static_cast<int>(std::lround(script.length_s() * kFramesPerSecond));
   }
@@ -185,13 +184,15 @@ SyntheticClipFrame SyntheticClip::frame(int index) {
   State& s = *state_;
   SyntheticClipFrame out;
   out.t_s = index / kFramesPerSecond;
+  if (!s.left) s.left.emplace(s.pool, s.room, s.mounts.left.camera, s.world_from_left);
+  if (!s.right) s.right.emplace(s.pool, s.room, s.mounts.right.camera, s.world_from_right);
   const State::Shot shot = s.shot(out.t_s), right_shot = s.shot(out.t_s + s.setup.skew_s);
   out.act = shot.moment.act;
   out.ceiling_light = shot.moment.lamp;
 
   const SyntheticSetup at{.size = s.setup.size, .seed = s.setup.seed, .t_s = out.t_s};
-  Backdrop::Drawn left = s.left.draw(s.pool, shot.figure, shot.lamps),
-                  right = s.right.draw(s.pool, right_shot.figure, right_shot.lamps);
+  Backdrop::Drawn left = s.left->draw(s.pool, shot.figure, shot.lamps),
+                  right = s.right->draw(s.pool, right_shot.figure, right_shot.lamps);
   out.pair.left = taken(develop(s.pool, left.colors, webcam(at, 0)), out.t_s);
   out.pair.right = taken(develop(s.pool, right.colors, webcam(at, 1)), out.t_s + s.setup.skew_s);
   out.pair.sequence = out.pair.left.sequence = out.pair.right.sequence = static_cast<std::uint64_t>(index);

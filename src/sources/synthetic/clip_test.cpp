@@ -297,32 +297,52 @@ TEST(SyntheticClip, IsAnySize) {
   }
 }
 
-// As two cameras: at their rate, the newest first, over and over.
+/// The first time each pair comes when it is rendered, in order; then all come at the rate of cameras, the newest first, over
+/// and over. The next time they are kept, and come at that rate at once.
 TEST(SyntheticClip, Live) {
-  const auto source = open_pairs("synthetic:wave:64x48:10", "");
-  ASSERT_TRUE(source) << source.error().what;
-  EXPECT_TRUE((*source)->live());
+  const test::TempFolder cache;
+  ASSERT_EQ(setenv("XDG_CACHE_HOME", (cache / "").c_str(), 1), 0);
   const SyntheticClipSetup setup{.size = kTiny, .script = "wave"};
   auto clip = SyntheticClip::open(setup, 2);
-  EXPECT_EQ((*source)->rig()->left.fx_px, clip->rig().left.fx_px);
-  Pair pair;
-  Result<Next> next = (*source)->next(pair);
-  while (next && *next == Next::kNothing) {
-    EXPECT_NE((*source)->warning().find("rendering"), std::string::npos);
-    next = (*source)->next(pair);
+  const auto expected = [&](const Pair& pair) {
+    const auto turn = static_cast<int>(pair.sequence % 18);
+    return clip->frame(std::min(turn, 18 - turn)).pair;
+  };
+  for (const bool kept : {false, true}) {
+    SCOPED_TRACE(kept);
+    const auto source = open_pairs("synthetic:wave:64x48:10", "");
+    ASSERT_TRUE(source) << source.error().what;
+    EXPECT_TRUE((*source)->live());
+    EXPECT_EQ((*source)->rig()->left.fx_px, clip->rig().left.fx_px);
+    Pair pair;
+    std::uint64_t first = 0;
+    TimeNs before_ns = 0;
+    for (int i = 0; i < 10; ++i) {
+      Result<Next> next = (*source)->next(pair);
+      while (next && *next == Next::kNothing) next = (*source)->next(pair);
+      ASSERT_TRUE(next && *next == Next::kNew);
+      EXPECT_EQ(pixels(pair.right.pixels), pixels(expected(pair).right.pixels));
+      EXPECT_GT(pair.left.t_ns, before_ns);
+      EXPECT_TRUE(i == 0 || pair.sequence > first);
+      first = pair.sequence;
+      before_ns = pair.left.t_ns;
+    }
+    while (!(*source)->warning().empty()) ASSERT_TRUE((*source)->next(pair));
+    ASSERT_EQ(*(*source)->next(pair), Next::kNew);
+    const TimeNs start_ns = pair.left.t_ns;
+    const std::uint64_t start = pair.sequence;
+    const std::int64_t dropped = (*source)->dropped();
+    std::this_thread::sleep_for(std::chrono::milliseconds(430));
+    ASSERT_EQ(*(*source)->next(pair), Next::kNew);
+    ASSERT_GE(pair.sequence, start + 12);
+    EXPECT_EQ((*source)->dropped() - dropped, static_cast<std::int64_t>(pair.sequence - start) - 1);
+    EXPECT_NEAR(static_cast<double>(pair.left.t_ns - start_ns), static_cast<double>(pair.sequence - start) * 1e9 / 30, 100);
+    EXPECT_EQ(pixels(pair.left.pixels), pixels(expected(pair).left.pixels));
+    const auto file = cache / "duoptic/synthetic-wave-64x48-10";
+    for (int i = 0; i < 1000 && !std::filesystem::exists(file); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_GT(std::filesystem::file_size(file), 2u * 10 * 3 * 64 * 48);
   }
-  ASSERT_TRUE(next && *next == Next::kNew);
-  EXPECT_EQ((*source)->warning(), "");
-  EXPECT_EQ(pair.sequence, 0u);
-  EXPECT_EQ(pixels(pair.right.pixels), pixels(clip->frame(0).pair.right.pixels));
-  const TimeNs start_ns = pair.left.t_ns;
-  std::this_thread::sleep_for(std::chrono::milliseconds(430));  // on the way back: 10 pairs there, the last of them once
-  ASSERT_EQ(*(*source)->next(pair), Next::kNew);
-  ASSERT_GE(pair.sequence, 12u);
-  EXPECT_EQ((*source)->dropped(), static_cast<std::int64_t>(pair.sequence) - 1);
-  EXPECT_NEAR(static_cast<double>(pair.left.t_ns - start_ns), static_cast<double>(pair.sequence) * 1e9 / 30, 100);
-  const auto turn = static_cast<int>(pair.sequence % 18);
-  EXPECT_EQ(pixels(pair.left.pixels), pixels(clip->frame(std::min(turn, 18 - turn)).pair.left.pixels));
+  unsetenv("XDG_CACHE_HOME");
 }
 
 TEST(SyntheticClip, LiveRefusesWhatCannotBe) {

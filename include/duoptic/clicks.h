@@ -6,7 +6,7 @@
 
 #include "duoptic/tracker.h"
 
-namespace duo::app::view {
+namespace duo {
 
 /// The joints of one skeleton after the other, each from the ends of its limbs to its root.
 class Clicks {
@@ -47,4 +47,4 @@ class Clicks {
   bool wanted_ = true;
 };
 
-}  // namespace duo::app::view
+}  // namespace duo

@@ -1,4 +1,4 @@
-#include "output.h"
+#include "duoptic/output_set.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,7 +15,10 @@
 #include <system_error>
 #include <utility>
 
-namespace duo::app {
+#include "core/file.h"
+#include "duoptic/stdout.h"
+
+namespace duo {
 namespace fs = std::filesystem;
 
 namespace {
@@ -61,6 +64,7 @@ int open_folder(int in, const char* name, int more = 0) {
 }  // namespace
 
 Result<OutputSet> OutputSet::open(const fs::path& folder) {
+  if (is_stdout(folder)) return cannot_write(folder, "these are several files; name a folder");
   OutputSet out;
   out.folder_ = folder;
   DUO_TRY(make_folders(folder, out.made_));
@@ -166,4 +170,4 @@ std::vector<std::string> OutputSet::paths() const {
   return out;
 }
 
-}  // namespace duo::app
+}  // namespace duo

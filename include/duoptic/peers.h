@@ -1,4 +1,4 @@
-// OpenCV's stereo matchers, run beside ours on the same pictures. The only part of the tool that sees OpenCV.
+// OpenCV's stereo matchers, run beside ours on the same pictures. For comparison alone.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 #include "duoptic/image.h"
 
-namespace duo::app {
+namespace duo {
 
 /// One matcher with one set of parameters.
 struct Peer {
@@ -46,4 +46,4 @@ Image<std::uint8_t> opencv_gray(View<const Rgb8> color);
 
 std::string opencv_version();
 
-}  // namespace duo::app
+}  // namespace duo

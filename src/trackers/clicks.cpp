@@ -1,10 +1,10 @@
-#include "clicks.h"
+#include "duoptic/clicks.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-namespace duo::app::view {
+namespace duo {
 
 Clicks::Clicks(std::vector<const Skeleton*> skeletons, bool wanted) : skeletons_(std::move(skeletons)) {
   for (const Skeleton* skeleton : skeletons_) {
@@ -59,4 +59,4 @@ std::vector<Selection> Clicks::selections() const {
   return out;
 }
 
-}  // namespace duo::app::view
+}  // namespace duo

@@ -1,10 +1,10 @@
-#include "peers.h"
+#include "duoptic/peers.h"
 
 #include <algorithm>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace duo::app {
+namespace duo {
 namespace {
 
 using Kind = Peer::Kind;
@@ -125,4 +125,4 @@ Image<std::uint8_t> opencv_gray(View<const Rgb8> color) {
 
 std::string opencv_version() { return cv::getVersionString(); }
 
-}  // namespace duo::app
+}  // namespace duo

@@ -7,7 +7,7 @@
 
 #include "duoptic/result.h"
 
-namespace duo::app {
+namespace duo {
 
 /// Files are written into a hidden folder inside `folder` and take their names in publish(); what was not published is removed
 /// at the end, with the folders that were made for it. Both folders are looked up once: what others put in their place later
@@ -45,4 +45,4 @@ class OutputSet {
   std::vector<std::string> names_, stale_;
 };
 
-}  // namespace duo::app
+}  // namespace duo

@@ -1,0 +1,117 @@
+#include "start.h"
+
+#include <fmt/format.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <filesystem>
+
+#include "duoptic/cameras.h"
+#include "duoptic/interrupt.h"
+#include "style.h"
+
+namespace duo::app::view {
+namespace {
+
+std::string short_name(const std::string& path) {
+  return path.starts_with('/') ? std::filesystem::path(path).filename().string() : path;
+}
+
+std::string words_of(const SourceChoice& choice) {
+  std::string out = short_name(choice.left);
+  if (!choice.right.empty()) out += ", " + short_name(choice.right);
+  return out;
+}
+
+void put(ImU32 color, const std::string& text, ImFont* font = nullptr) {
+  if (font != nullptr) ImGui::PushFont(font);
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::TextWrapped("%s", text.c_str());
+  ImGui::PopStyleColor();
+  if (font != nullptr) ImGui::PopFont();
+}
+
+}  // namespace
+
+std::vector<StartPage::Way> StartPage::ways() {
+  std::vector<Way> out;
+  out.push_back({"Without cameras", "A rendered person", "is tracked live", {"synthetic", "", ""}});
+  const auto cameras = find_cameras();
+  const CameraWish wish;
+  std::string title = "Cameras";
+  if (cameras)
+    for (const CameraPair& pair : camera_pairs(*cameras, wish)) {
+      const CameraInfo &left = (*cameras)[pair.left], &right = (*cameras)[pair.right];
+      out.push_back({std::exchange(title, ""),
+                     fmt::format("{} and {}", source_name(left), source_name(right)),
+                     left.name == right.name ? "two of " + left.name : left.name + ", " + right.name,
+                     {source_name(left), source_name(right), ""}});
+    }
+  title = "Recent";
+  for (const SourceChoice& choice : recent_sources())
+    if (choice.left != "synthetic")
+      out.push_back(
+          {std::exchange(title, ""), words_of(choice), std::filesystem::path(choice.left).parent_path().string(), choice});
+  return out;
+}
+
+std::optional<SourceChoice> StartPage::choose(const std::string& problem) {
+  problem_ = problem;
+  const std::vector<Way> all = ways();
+  window_.set_title("duoptic view: choose a source");
+  while (!window_.closing() && !Interrupt::asked()) {
+    Window::wait(ImGui::IsAnyMouseDown() ? 0.01 : 0.1);
+    for (const int key : window_.keys()) {
+      if (key == GLFW_KEY_Q) return std::nullopt;
+      const auto number = static_cast<std::size_t>(key - GLFW_KEY_1);
+      if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9 && number < all.size()) return all[number].choice;
+    }
+    if (auto dropped = take_dropped()) return dropped;
+    if (!window_.begin()) continue;
+    auto chosen = draw(all);
+    window_.end();
+    if (chosen && chosen->rig.empty()) chosen->rig = rig_;
+    if (chosen) return chosen;
+  }
+  return std::nullopt;
+}
+
+/// A rig that comes alone waits for pictures, and they for it.
+std::optional<SourceChoice> StartPage::take_dropped() {
+  const std::vector<std::string> files = window_.dropped();
+  if (files.empty()) return std::nullopt;
+  const auto choice = choose_files({files.begin(), files.end()});
+  problem_ = choice ? "" : choice.error().what;
+  if (!choice) return std::nullopt;
+  if (!choice->rig.empty()) rig_ = choice->rig;
+  if (!choice->left.empty()) dropped_ = *choice;
+  if (dropped_.left.empty()) return std::nullopt;
+  return SourceChoice{dropped_.left, dropped_.right, rig_};
+}
+
+std::optional<SourceChoice> StartPage::draw(const std::vector<Way>& ways) {
+  std::optional<SourceChoice> out;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float scale = window_.scale(), width = std::min(size.x - 40 * scale, 620 * scale);
+  ImGui::SetNextWindowPos({(size.x - width) / 2, 20 * scale});
+  ImGui::SetNextWindowSize({width, size.y - 40 * scale});
+  ImGui::Begin("start", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+  put(kText, "What shall be looked at?", title_font());
+  put(kFaint,
+      "Drop two videos or one recording here, with a rig file if they need one; or choose by a click or a number's key.");
+  if (!rig_.empty()) put(kAccent, "rig: " + short_name(rig_));
+  if (!problem_.empty()) put(kBad, problem_);
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    const Way& way = ways[i];
+    if (!way.title.empty()) ImGui::Dummy({0, 6 * scale}), put(kText, way.title, title_font());
+    if (ImGui::Button(fmt::format("{}   {}##{}", i + 1, way.name, i).c_str(), {0.55f * width, 0})) out = way.choice;
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", way.note.c_str());
+  }
+  ImGui::End();
+  return out;
+}
+
+}  // namespace duo::app::view

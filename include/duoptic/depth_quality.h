@@ -1,0 +1,54 @@
+// How good depth is, measured on a flat wall: fill rate, plane fit, sub-pixel error, temporal noise, distance.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "duoptic/frame.h"
+#include "duoptic/result.h"
+#include "duoptic/rig.h"
+#include "duoptic/window.h"
+
+namespace duo {
+
+/// What the frames of a still, flat wall tell of a rig and its matcher. Each figure of a single frame is the median over all
+/// frames.
+///
+/// Source  the definitions of RealSense's Depth Quality Tool: z_i is a pixel's depth, zp_i that of its foot on the plane that
+///         least squares fit to all points; the nearest and the farthest 0.5 % of the points are then left out
+struct DepthQuality {
+  int frames = 0;
+  double fill_rate_percent = 0;              // pixels of the region with a depth
+  double distance_m = 0;                     // from the left camera's centre to the plane, at a right angle
+  double angle_deg = 0;                      // between the optical axis and the plane's normal
+  double plane_fit_rms_mm = 0;               // root of the mean of (point to plane)^2
+  double subpixel_rms_px = 0;                // root of the mean of (b f / z_i - b f / zp_i)^2
+  double temporal_noise_mm = 0;              // median over pixels of the standard deviation of z; 0 of a single frame
+  double temporal_noise_percent = 0;         // likewise of the standard deviation divided by the median of z
+  std::optional<double> z_error_mm;          // distance_m less the true one
+  std::optional<double> z_accuracy_percent;  // likewise divided by the true one
+};
+
+/// Takes the frames one by one.
+class DepthQualityMeter {
+ public:
+  /// region  of the rectified left picture, px
+  /// true_distance_m  from the left camera's centre to the wall, when it is known
+  DepthQualityMeter(const Rectified& rectified, Window region, std::optional<double> true_distance_m = std::nullopt);
+  DepthQualityMeter(DepthQualityMeter&&) noexcept;
+  ~DepthQualityMeter();
+
+  /// Errors  the region has fewer than 100 pixels with a depth, or these lie on a line
+  Result<void> add(const Frame& frame);
+  /// Of the frames so far; at least one.
+  DepthQuality quality() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// The half of the picture around its middle.
+Window middle_half(Size size);
+
+}  // namespace duo

@@ -1,0 +1,13 @@
+// One pair of pictures as a stream.
+#pragma once
+
+#include <memory>
+
+#include "duoptic/source.h"
+
+namespace duo {
+
+/// Gives the pair once.
+std::unique_ptr<PairSource> one_pair(Pair pair);
+
+}  // namespace duo
