@@ -44,14 +44,12 @@ std::optional<FittedPlane> fit_plane(const std::vector<Vec3>& points_m) {
 
 double root_of_mean(double sum, std::size_t count) { return std::sqrt(sum / static_cast<double>(count)); }
 
-/// Of each frame.
-struct Figures {
-  std::vector<double> fill_percent, distance_m, angle_deg, rms_mm, rms_px;
-};
-
 }  // namespace
 
 struct DepthQualityMeter::State {
+  struct Figures {  // of each frame
+    std::vector<double> fill_percent, distance_m, angle_deg, rms_mm, rms_px;
+  };
   Rectified rectified;
   Window region;
   std::optional<double> true_distance_m;
