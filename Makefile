@@ -1,6 +1,6 @@
 # The few commands that everybody needs. Each first installs what is missing (tools/setup; does nothing when all is there).
 # build/release has the tool, and once `make test` was called the tests; build/sanitize the tests with ASan and UBSan.
-.PHONY: build demo test bench soak chaos fuzz format setup-build setup-test
+.PHONY: build demo test bench deb deb-test soak chaos fuzz format setup-build setup-test
 
 build: setup-build
 	@test -f build/release/build.ninja || cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=OFF >/dev/null
@@ -14,6 +14,22 @@ test: setup-test
 
 bench: build
 	@build/release/duoptic bench
+
+# Debian packages in build/deb/packages: library, headers, tool, Python module.
+deb: setup-build
+	@tools/setup build package
+	@cmake -S . -B build/deb -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DCMAKE_INSTALL_PREFIX=/usr \
+	  -DDUO_TESTS=OFF -DDUO_PYTHON=ON -DDUO_XNNPACK=OFF >/dev/null
+	@cmake --build build/deb
+	@cmake --build build/deb --target duoptic_manual >/dev/null && gzip -9nf build/deb/man/man1/*.1
+	@cd build/deb && rm -rf packages && cpack >cpack.log || { cat cpack.log; exit 1; }
+	@lintian --fail-on error build/deb/packages/*.deb
+	@ls build/deb/packages/*.deb
+
+# Installs them on a fresh Debian, tries them there and removes them. As root: it makes a root of its own with debootstrap.
+deb-test: deb
+	@tools/setup trial
+	@tools/try_packages build/deb/packages
 
 # Ten minutes of live tracking: memory, latency, drops. Leave the machine alone meanwhile.
 soak: setup-test

@@ -1,10 +1,11 @@
 # duoptic_stage(NAME [VULKAN [SHADERS more...]]): adds src/stages/NAME to the library and its test; with VULKAN also NAME.comp and
 # the shaders named, NAME_vk.cpp, and NAME_vk_test.cpp to the one program that holds all kernels against their references.
-# duoptic_test(GROUP/NAME SOURCES... [SLOW]): one ctest entry, which runs the tests of these files; the files of a group are one program.
+# duoptic_test(GROUP/NAME SOURCES... [SLOW] [ALONE TESTS]): one ctest entry, which runs the tests of these files; the files of a group are one
+# program. Of a release build TESTS (a pattern of GoogleTest's) are an entry of their own, beside which nothing runs: they measure time.
 
-# Warnings are errors in our own code; -ffp-contract=off because a fused multiply-add would round differently from engine to engine.
+# Warnings are errors in our own builds; -ffp-contract=off because a fused multiply-add would round differently from engine to engine.
 add_library(duoptic_flags INTERFACE)
-target_compile_options(duoptic_flags INTERFACE -Wall -Wextra -Werror -ffp-contract=off)
+target_compile_options(duoptic_flags INTERFACE -Wall -Wextra $<$<BOOL:${DUO_WERROR}>:-Werror> -ffp-contract=off)
 # g++ 12 lacks what Highway's newest baseline asks for; with EMU128 allowed the baseline is tested like every other target.
 # SSSE3 and AVX-512 without its later parts (byte counts and permutes) are left out: the few processors that have them lose little to
 # SSE2 and AVX2, and each target has its share of the compile time.
@@ -31,7 +32,7 @@ endfunction()
 if(DUO_TESTS)
   # The headers that every test reads, compiled once.
   add_library(duoptic_test_main OBJECT ${PROJECT_SOURCE_DIR}/tests/main.cpp ${PROJECT_SOURCE_DIR}/tests/allocations.cpp)
-  target_link_libraries(duoptic_test_main PUBLIC duoptic duoptic_flags GTest::gtest)
+  target_link_libraries(duoptic_test_main PUBLIC duoptic duoptic_flags GTest::gtest PkgConfig::HWY)
   target_include_directories(duoptic_test_main PUBLIC ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
   # Tests run once, and most of their compile time is the optimiser's; what they test is in the library.
   target_compile_options(duoptic_test_main PUBLIC $<IF:$<CONFIG:Release>,-O1,-O0>)
@@ -48,25 +49,37 @@ function(duoptic_test_program target)
   endif()
 endfunction()
 
+# duoptic_test_alone(ENTRY TESTS COMMAND...): adds the entry ENTRY_alone, and gives in `others` what the command of ENTRY needs to leave TESTS out.
+function(duoptic_test_alone name tests)
+  set(others "" PARENT_SCOPE)
+  if(NOT tests STREQUAL "" AND CMAKE_BUILD_TYPE STREQUAL "Release")
+    set(others --gtest_filter=-${tests} PARENT_SCOPE)
+    add_test(NAME ${name}_alone COMMAND ${ARGN} --gtest_filter=${tests} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+    set_tests_properties(${name}_alone PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600 RUN_SERIAL TRUE)
+  endif()
+endfunction()
+
 function(duoptic_test name)
-  cmake_parse_arguments(ARG "SLOW" "" "" ${ARGN})
+  cmake_parse_arguments(ARG "SLOW" "ALONE" "" ${ARGN})
   if(NOT DUO_TESTS OR (ARG_SLOW AND NOT DUO_SLOW_TESTS))
     return()
   endif()
   string(REGEX REPLACE "/.*" "_test" target ${name})
   duoptic_test_program(${target})
   target_sources(${target} PRIVATE ${ARG_UNPARSED_ARGUMENTS})
-  add_test(NAME ${name} COMMAND ${target} ${ARG_UNPARSED_ARGUMENTS} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})  # ../shared/data is the default data
+  duoptic_test_alone(${name} "${ARG_ALONE}" ${target} ${ARG_UNPARSED_ARGUMENTS})
+  # ../shared/data is the default data.
+  add_test(NAME ${name} COMMAND ${target} ${ARG_UNPARSED_ARGUMENTS} ${others} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600)
   if(ARG_SLOW)
     set_tests_properties(${name} PROPERTIES COST 10)  # begins early, so that the last test to run is a short one
   endif()
 endfunction()
 
-# duoptic_vulkan_test(NAME [SOURCES...] [EVERY_SIZE] [ASSISTED] [SLOW]): one program, run at subgroups of 8, with EVERY_SIZE also of 4 and 16, what
+# duoptic_vulkan_test(NAME [SOURCES...] [EVERY_SIZE] [ASSISTED] [SLOW] [ALONE TESTS]): one program, run at subgroups of 8, with EVERY_SIZE also of 4 and 16, what
 # the software driver can take; with ASSISTED once more with every access of the kernels checked. Sanitizers do not see inside kernels: once.
 function(duoptic_vulkan_test name)
-  cmake_parse_arguments(ARG "EVERY_SIZE;ASSISTED;SLOW" "" "" ${ARGN})
+  cmake_parse_arguments(ARG "EVERY_SIZE;ASSISTED;SLOW" "ALONE" "" ${ARGN})
   if(NOT DUO_TESTS OR NOT DUO_VULKAN OR (ARG_SLOW AND NOT DUO_SLOW_TESTS))
     return()
   endif()
@@ -81,10 +94,11 @@ function(duoptic_vulkan_test name)
   if(DUO_SLOW_TESTS AND ARG_ASSISTED)
     list(APPEND variants _assisted:DUOPTIC_GPU_ASSISTED=1)
   endif()
+  duoptic_test_alone(${name} "${ARG_ALONE}" ${target})
   foreach(variant ${variants})
     string(REGEX REPLACE ":.*" "" suffix ${variant})
     string(REGEX REPLACE "^[^:]*:" "" environment ${variant})
-    add_test(NAME ${name}${suffix} COMMAND ${target} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+    add_test(NAME ${name}${suffix} COMMAND ${target} ${others} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
     set_tests_properties(${name}${suffix} PROPERTIES ENVIRONMENT ${environment} SKIP_RETURN_CODE 77 TIMEOUT 600)
   endforeach()
 endfunction()

@@ -27,6 +27,18 @@ constexpr SinkKind kSinkKinds[] = {
      [](const std::string& target, const SinkOptions&, const TrackHeader& header, std::string&) -> Made {
        return make_bvh(target, header);
      }},
+    {"--gltf", "FILE", "Motion as a binary glTF 2.0, for Blender, game engines and browsers; metres, y up", "glTF", ".glb",
+     [](const std::string& target, const SinkOptions&, const TrackHeader& header, std::string&) -> Made {
+       return make_gltf(target, header);
+     }},
+    {"--trc", "FILE", "Places of the joints as markers, for OpenSim; metres, y up", "TRC", ".trc",
+     [](const std::string& target, const SinkOptions&, const TrackHeader& header, std::string&) -> Made {
+       return make_trc(target, header);
+     }},
+    {"--mcap", "FILE", "Depth, points and people as ROS 2 messages in an MCAP file, for ros2 bag and Foxglove", "MCAP", ".mcap",
+     [](const std::string& target, const SinkOptions&, const TrackHeader& header, std::string&) -> Made {
+       return make_mcap(target, header);
+     }},
     {"--osc", "HOST:PORT", "Send OSC messages by UDP; nothing is received", "OSC", "127.0.0.1:9000",
      [](const std::string& target, const SinkOptions& options, const TrackHeader&, std::string&) -> Made {
        DUO_TRY_ASSIGN(const Axes axes, axes_of(options.axes));
@@ -38,7 +50,7 @@ constexpr SinkKind kSinkKinds[] = {
        return make_vmc(target, options.vmc_bones);
      }},
 };
-constexpr std::size_t kLines = 0, kVideo = 1;
+constexpr std::size_t kLines = 0, kVideo = 1, kMcap = 6;
 
 std::vector<std::string> axes_names() { return {kAxesNames.begin(), kAxesNames.end()}; }
 
@@ -60,7 +72,7 @@ void SinkOptions::add_to(CLI::App& app) {
       ->capture_default_str();
 }
 
-bool SinkOptions::wants_video() const { return !targets[kVideo].empty(); }
+bool SinkOptions::wants_maps() const { return !targets[kVideo].empty() || !targets[kMcap].empty(); }
 
 /// How many outputs were sent to stdout.
 std::ptrdiff_t SinkOptions::sent_to_stdout() const {

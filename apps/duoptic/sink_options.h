@@ -33,7 +33,8 @@ struct SinkOptions {
 
   SinkOptions() : targets(sink_kinds().size()) {}
   void add_to(CLI::App& app);
-  bool wants_video() const;
+  /// An output shows the whole frame, not people alone.
+  bool wants_maps() const;
   /// Whether an output goes to stdout: the JSON lines where nothing else is sent there.
   ///
   /// Errors  thrown as usage: two outputs do

@@ -167,7 +167,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
                                 .rig = input.rig,
                                 .date = input.pairs->live() ? date_now() : "",
                                 .replace = options.force};
-  tracking.all_maps = options.sinks.wants_video();
+  tracking.all_maps = options.sinks.wants_maps();
   tracking.in_bulk = true;
   DUO_TRY_ASSIGN(PipelineSetup setup, tracking.setup(input));
   setup.first = options.at_frame;

@@ -8,7 +8,7 @@
 #include "duoptic/geometry.h"
 #include "duoptic/result.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// All have their origin in the left camera's centre and count metres. "Up" is the left camera's, after rectification.
 enum class Axes : std::uint8_t {

@@ -9,7 +9,7 @@
 #include "duoptic/geometry.h"
 #include "duoptic/result.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// A flat pattern of squares, black in the top-left corner. On a ChArUco board each white square holds a marker, numbered row
 /// by row, of OpenCV's dictionaries DICT_4X4, 5X5 or 6X6 (the first 250, which all their lengths share), laid out as OpenCV

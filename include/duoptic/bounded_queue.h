@@ -12,7 +12,7 @@
 
 #include "duoptic/result.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// What put() does to a full queue.
 enum class WhenFull : std::uint8_t {

@@ -13,7 +13,7 @@
 #include "duoptic/rig.h"
 #include "duoptic/source.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// Pairs of pictures of a board: from two folders, or the still moments of two videos.
 class BoardPictures {

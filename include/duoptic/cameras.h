@@ -8,7 +8,7 @@
 #include "duoptic/result.h"
 #include "duoptic/source.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// A size that a camera gives in one format.
 struct CameraMode {

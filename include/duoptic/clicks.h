@@ -6,7 +6,7 @@
 
 #include "duoptic/tracker.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// The joints of one skeleton after the other, each from the ends of its limbs to its root.
 class Clicks {

@@ -9,7 +9,7 @@
 #include "duoptic/rig.h"
 #include "duoptic/window.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// What the frames of a still, flat wall tell of a rig and its matcher. Each figure of a single frame is the median over all
 /// frames.

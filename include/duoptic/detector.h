@@ -17,7 +17,7 @@
 #include "duoptic/result.h"
 #include "duoptic/window.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// Points of a body, left and right as the person says it. The numbers are BlazePose's.
 enum class BodyPoint : std::uint8_t {
@@ -142,7 +142,7 @@ struct DetectorOptions {
   std::filesystem::path models = {};  // folder of the networks; empty: models_folder()
 };
 
-/// The folder of the networks: $DUOPTIC_MODELS, or the one that this program was built with.
+/// The folder of the networks: $DUOPTIC_MODELS, or the one that was installed with the library, or the source's.
 std::filesystem::path models_folder();
 
 /// Errors  a network is missing (how to get it), broken, cut, or another network than its name says; no such device

@@ -7,7 +7,7 @@
 
 #include "duoptic/result.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 struct DeviceInfo {
   std::string name, type, driver, api_version;  // type: discrete, integrated, virtual, software or other

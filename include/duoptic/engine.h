@@ -15,7 +15,7 @@
 #include "duoptic/row_offsets.h"
 #include "duoptic/window.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 enum class Denoise : std::uint8_t {
   kAuto,  // kGaussian for raw pictures (with a rig), kNone for pairs that come rectified

@@ -9,7 +9,7 @@
 #include "duoptic/image.h"
 #include "duoptic/rig.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 using TimeNs = std::int64_t;  // steady clock, nanoseconds
 

@@ -16,7 +16,7 @@
 #include "duoptic/rig.h"
 #include "duoptic/sink.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// Kinds of output, as a user names them. All but disparity and confidence need a rig.
 enum class FrameOutput : std::uint8_t {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 struct Vec2 {
   double x = 0, y = 0;

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 struct Size {
   int width = 0;

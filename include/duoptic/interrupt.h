@@ -4,7 +4,7 @@
 #include <csignal>
 #include <ctime>
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// Ctrl-C, SIGTERM and SIGHUP. A loop that asks ends after its whole frames, and outputs are finished; the exit code is then
 /// 128 and the signal's number. A signal that comes a second or more after the first ends the program as ever: some programs

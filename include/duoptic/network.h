@@ -8,7 +8,7 @@
 
 #include "duoptic/result.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// A network that is ready to run on an input of waves. Nothing is allocated after open_network().
 ///

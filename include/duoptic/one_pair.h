@@ -5,7 +5,7 @@
 
 #include "duoptic/source.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// Gives the pair once.
 std::unique_ptr<PairSource> one_pair(Pair pair);

@@ -7,7 +7,7 @@
 
 #include "duoptic/result.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// Files are written into a hidden folder inside `folder` and take their names in publish(); what was not published is removed
 /// at the end, with the folders that were made for it. Both folders are looked up once: what others put in their place later

@@ -13,7 +13,7 @@
 #include "duoptic/rig.h"
 #include "duoptic/sink.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// The disparities that get the first and the last colour.
 struct DisparityRange {

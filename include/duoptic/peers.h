@@ -7,7 +7,7 @@
 
 #include "duoptic/image.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// One matcher with one set of parameters.
 struct Peer {

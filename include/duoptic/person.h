@@ -10,7 +10,7 @@
 #include "duoptic/skeleton.h"
 #include "duoptic/window.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// Covariance of a position.
 ///

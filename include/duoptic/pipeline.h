@@ -18,7 +18,7 @@
 #include "duoptic/source.h"
 #include "duoptic/tracker.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// What is done with what rig_fit() finds in the first second, and of a live source every minute.
 enum class RigCheck : std::uint8_t {

@@ -12,7 +12,7 @@
 #include "duoptic/result.h"
 #include "duoptic/rig.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 struct RecorderSetup {
   double frame_s = 1.0 / 30;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <variant>
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 enum class ErrorCode : std::uint8_t {
   kBadInput,     // what the user gave cannot be used (file, picture, rig, option)

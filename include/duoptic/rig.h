@@ -11,7 +11,7 @@
 #include "duoptic/image.h"
 #include "duoptic/result.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// A pinhole camera with radial and tangential distortion.
 ///

@@ -8,7 +8,7 @@
 
 #include "duoptic/rig.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 enum class RigFormat : std::uint8_t {
   kOpencv,        // M1 D1 M2 D2 R T R1 R2 P1 P2 Q, YAML or JSON

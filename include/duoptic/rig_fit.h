@@ -10,7 +10,7 @@
 #include "duoptic/rig.h"
 #include "duoptic/rig_health.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 struct RigFit {
   RigVerdict verdict = RigVerdict::kGood;  // also where nothing can be told

@@ -9,7 +9,7 @@
 #include "duoptic/rig.h"
 #include "duoptic/source.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 enum class RigVerdict : std::uint8_t { kGood, kCanBeImproved, kRecalibrate };
 

@@ -8,7 +8,7 @@
 #include "duoptic/result.h"
 #include "duoptic/source.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// How a right picture that was undistorted as another lens lies to the right one: a turn of the camera, a focal length and a
 /// lens around its own middle. Rows tell all of it that moves rows, and it moves columns as well: x_right = (1 + zoom) x' -

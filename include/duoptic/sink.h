@@ -16,7 +16,7 @@
 #include "duoptic/rig.h"
 #include "duoptic/tracker.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 inline constexpr double kNoFarLimit_m = 1e9;
 
@@ -104,6 +104,23 @@ Result<std::unique_ptr<Sink>> make_csv(const std::filesystem::path& path, Axes a
 ///
 /// Errors  those of every written file
 Result<std::unique_ptr<Sink>> make_bvh(const std::filesystem::path& path, const TrackHeader& header);
+
+/// The same as a binary glTF 2.0: a node per joint, a skin and an animation per person.
+///
+/// Errors  those of every written file
+Result<std::unique_ptr<Sink>> make_gltf(const std::filesystem::path& path, const TrackHeader& header);
+
+/// Places of the joints as markers, for OpenSim and other programs of biomechanics: a row each frame_s from the first frame on.
+/// Metres, y up, nothing where a joint is lost, see docs/formats.md. Kept in memory until finish().
+///
+/// Errors  those of every written file
+Result<std::unique_ptr<Sink>> make_trc(const std::filesystem::path& path, const TrackHeader& header);
+
+/// Depth, its camera, coloured points and people as messages of ROS 2 in an MCAP file, see docs/formats.md. Frames need disparity
+/// and colour.
+///
+/// Errors  those of every written file
+Result<std::unique_ptr<Sink>> make_mcap(const std::filesystem::path& path, const TrackHeader& header);
 
 /// Sends a bundle of OSC messages a frame by UDP to `target`, "host:port"; nothing listens and nothing waits: what the network
 /// does not take at once is dropped. See docs/formats.md for the addresses.

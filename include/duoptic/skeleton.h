@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// The person's own side.
 enum class Side : std::uint8_t { kMiddle, kLeft, kRight };

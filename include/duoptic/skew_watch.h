@@ -8,7 +8,7 @@
 
 #include "duoptic/sink.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// How far off the depth of a moving point is when nothing is done about it: between the two pictures it moves v dt along the
 /// baseline, which is taken for disparity: dz = z v dt / b.

@@ -11,7 +11,7 @@
 #include "duoptic/result.h"
 #include "duoptic/rig.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 enum class Next : std::uint8_t {
   kNew,      // a new picture, pair or frame

@@ -7,7 +7,7 @@
 
 #include "duoptic/result.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// As open_pairs() and load_rig() take it; an empty name: none.
 struct SourceChoice {

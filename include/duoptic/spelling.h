@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// The likeliest of `names`: few letters are missing, too many, other ones, or have changed places with a neighbour, or one word
 /// is part of the other. Dashes in front do not count. Empty: none is like it.

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <span>
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// The value at place `rank`, counted from 0, of all values in order.
 template <class Values>

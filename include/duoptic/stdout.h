@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// True for "-" and "/dev/stdout". Whatever writes one file takes such a path: its bytes come out together when the file is
 /// whole, or none of them; JSON lines come out line by line.

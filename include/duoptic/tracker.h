@@ -15,7 +15,7 @@
 #include "duoptic/rig.h"
 #include "duoptic/skeleton.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// Where the user clicked on a joint, raw left pixels.
 struct Click {

@@ -5,7 +5,7 @@
 
 #include "duoptic/image.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// Columns [x, x + width) of rows [y, y + height). May reach over the picture's border; stages look at what lies inside.
 struct Window {

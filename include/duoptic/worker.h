@@ -10,7 +10,7 @@
 
 #include "duoptic/result.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// Calls `work`; what it throws becomes an Error. `what` completes "cannot ...": "read the next pair".
 Result<void> without_exceptions(const std::string& what, const std::function<Result<void>()>& work);

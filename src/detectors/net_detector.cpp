@@ -1,8 +1,10 @@
 // The detector of networks.
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <system_error>
 
 #include "core/check.h"
 #include "core/pool.h"
@@ -227,7 +229,15 @@ class NetDetector final : public Detector {
 
 std::filesystem::path models_folder() {
   const char* given = std::getenv("DUOPTIC_MODELS");
-  return given != nullptr && *given != '\0' ? given : DUO_MODELS;
+  if (given != nullptr && *given != '\0') return given;
+  static const char kHere = 0;  // where this code was loaded from
+  Dl_info loaded{};
+  if (dladdr(&kHere, &loaded) != 0 && loaded.dli_fname != nullptr) {
+    const auto installed = std::filesystem::path(loaded.dli_fname).parent_path() / DUO_MODELS_FROM_LIBRARY;
+    std::error_code none;
+    if (std::filesystem::is_directory(installed, none)) return installed.lexically_normal();
+  }
+  return DUO_MODELS;
 }
 
 namespace {

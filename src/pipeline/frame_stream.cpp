@@ -11,6 +11,13 @@ namespace duo {
 namespace {
 
 constexpr char kMakeFrame[] = "make the next frame";
+// Pairs outside the engine: being read or read ahead, being aligned, in the queue of frames, on its way out of the queue, and
+// the caller's.
+constexpr std::size_t kPairsOutside = 5;
+
+std::size_t pairs_in_engine(const PairSource& source, int at_once) {
+  return static_cast<std::size_t>(source.live() ? 1 : std::max(1, at_once));
+}
 
 }  // namespace
 
@@ -18,8 +25,8 @@ FrameStream::FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int
     : source_(std::move(source)),
       engine_(engine),
       choice_(choice),
-      pool_(0, [] { return Pair(); }),
-      ring_(static_cast<std::size_t>(source_->live() ? 1 : std::max(1, at_once))) {}
+      pool_(pairs_in_engine(*source_, at_once) + kPairsOutside, [] { return Pair(); }),
+      ring_(pairs_in_engine(*source_, at_once)) {}
 
 FrameStream::~FrameStream() {
   matcher_.ask_to_stop();
@@ -44,11 +51,25 @@ void FrameStream::start() {
   if (matcher) matcher_ = std::move(*matcher);
 }
 
+/// With the second pair it is a stream, and all pairs of the pool get their memory: none is allocated later.
+Result<Next> FrameStream::read_pair(std::shared_ptr<Pair>& into) {
+  into = pool_.lend();
+  DUO_TRY_ASSIGN(const Next next, source_->next(*into));
+  if (next != Next::kNew || ++pairs_read_ != 2) return next;
+  std::vector<std::shared_ptr<Pair>> others(pool_.size() - 1);
+  for (std::shared_ptr<Pair>& pair : others) {
+    pair = pool_.lend();
+    for (const auto& [picture, like] : {std::pair(&pair->left, &into->left), std::pair(&pair->right, &into->right)})
+      if (picture->pixels.size() != like->pixels.size()) picture->pixels = Image<Rgb8>(like->pixels.size());
+  }
+  return next;
+}
+
 /// One pair ahead of who takes them.
 Result<void> FrameStream::read_all() {
+  std::shared_ptr<Pair> pair;
   while (pairs_.wait_for_room()) {
-    std::shared_ptr<Pair> pair = pool_.lend();
-    DUO_TRY_ASSIGN(const Next next, source_->next(*pair));
+    DUO_TRY_ASSIGN(const Next next, read_pair(pair));
     if (next != Next::kNew) {
       end_ = next;
       break;
@@ -60,10 +81,7 @@ Result<void> FrameStream::read_all() {
 
 Result<Next> FrameStream::take_pair(std::shared_ptr<Pair>& into) {
   into.reset();
-  if (!reader_.started()) {
-    into = pool_.lend();
-    return source_->next(*into);
-  }
+  if (!reader_.started()) return read_pair(into);
   DUO_TRY_ASSIGN(const Taken taken, pairs_.take(into));
   return taken == Taken::kValue ? Next::kNew : end_.load();
 }

@@ -69,6 +69,7 @@ class FrameStream {
   /// kNothing where a live source has none yet.
   Result<Next> make_next(Matched& item);
   Result<Next> take_frame();
+  Result<Next> read_pair(std::shared_ptr<Pair>& into);
   Result<Next> take_pair(std::shared_ptr<Pair>& into);
   Result<Next> choose_pair(std::shared_ptr<Pair>& into);
   void align(Matched& item);
@@ -86,6 +87,7 @@ class FrameStream {
   ref::AlignTime align_;
   std::atomic<std::int64_t> read_ = 0;
   std::atomic<TimeNs> start_ns_ = 0;
+  std::int64_t pairs_read_ = 0;               // of whichever thread reads
   std::optional<Result<Next>> end_of_pairs_;  // of the matching thread alone
   std::atomic<Next> end_ = Next::kEnd;        // what the source's was
 

@@ -11,8 +11,12 @@ target_sources(duoptic PRIVATE
   ${dir}/csv.cpp
   ${dir}/depth_video.cpp
   ${dir}/frame_files.cpp
+  ${dir}/gltf.cpp
   ${dir}/in_background.cpp
   ${dir}/json_lines.cpp
+  ${dir}/mcap/mcap_file.cpp
+  ${dir}/mcap/mcap_sink.cpp
+  ${dir}/motion_tracks.cpp
   ${dir}/osc.cpp
   ${dir}/osc_target.cpp
   ${dir}/output_set.cpp
@@ -21,13 +25,14 @@ target_sources(duoptic PRIVATE
   ${dir}/ply.cpp
   ${dir}/png.cpp
   ${dir}/recorder.cpp
+  ${dir}/trc.cpp
   ${dir}/video_writer.cpp
   ${dir}/vmc.cpp)
 duoptic_test(sinks/files ${dir}/files_test.cpp)
 duoptic_test(sinks/frame_files ${dir}/frame_files_test.cpp)
 duoptic_test(sinks/tracked_frames ${dir}/tracked_frames_test.cpp)
-duoptic_test(sinks/other_programs ${dir}/motion_files_test.cpp ${dir}/osc_test.cpp)
+duoptic_test(sinks/other_programs ${dir}/motion_files_test.cpp ${dir}/osc_test.cpp ${dir}/mcap/mcap_test.cpp)
 duoptic_test(sinks/recorder ${dir}/recorder_test.cpp ${dir}/recorder_names_test.cpp)
 if(DUO_TESTS)
-  target_link_libraries(sinks_test PRIVATE PkgConfig::LIBLO opencv::core opencv::imgcodecs)
+  target_link_libraries(sinks_test PRIVATE PkgConfig::LIBLO nlohmann_json::nlohmann_json opencv::core opencv::imgcodecs)
 endif()

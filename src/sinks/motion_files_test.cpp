@@ -1,6 +1,9 @@
 // What other programs read: axes and tables by hand, a BVH through a strict parser and forward kinematics.
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
 
@@ -244,6 +247,112 @@ TEST(Bvh, ABodyByWalkingItsTable) {
   ASSERT_EQ(numbers.size(), 2 * (3 + 3 * kBody.joints.size()));
   for (std::size_t i = 0; i < numbers.size(); ++i)
     EXPECT_NEAR(numbers[i], i % (numbers.size() / 2) == 2 ? -2.0 : 0.0, 1e-6) << i;
+}
+
+// --- TRC and glTF -----------------------------------------------------------------------------------------------------------
+
+TEST(Trc, BytesByHand) {
+  const test::TempFolder folder;
+  auto sink = make_trc(folder / "arm.trc", {});
+  ASSERT_TRUE(sink) << sink.error().what;
+  Instant instant;
+  instant.people = {arm_of({0.1, -0.25, 1.5}, {-0.000001, 0, 2}, {1, 2, 3})};
+  ASSERT_TRUE((*sink)->write(instant.tracked(10)));
+  instant.people[0].joints[kHand].state = JointState::kLost;
+  ASSERT_TRUE((*sink)->write(instant.tracked(12)));  // 11 was dropped
+  EXPECT_FALSE(std::filesystem::exists(folder / "arm.trc"));
+  ASSERT_TRUE((*sink)->finish());
+  EXPECT_EQ(bytes_of(folder / "arm.trc"),
+            "PathFileType\t4\t(X/Y/Z)\tarm.trc\n"
+            "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n"
+            "30.0000\t30.0000\t3\t3\tm\t30.0000\t1\t3\n"
+            "Frame#\tTime\tright_shoulder\t\t\tright_elbow\t\t\tright_hand\t\t\n"
+            "\t\tX1\tY1\tZ1\tX2\tY2\tZ2\tX3\tY3\tZ3\n"
+            "\n"
+            "1\t0.000000\t0.10000\t0.25000\t-1.50000\t0.00000\t0.00000\t-2.00000\t1.00000\t-2.00000\t-3.00000\n"
+            "2\t0.033333\t\t\t\t\t\t\t\t\t\n"
+            "3\t0.066667\t0.10000\t0.25000\t-1.50000\t0.00000\t0.00000\t-2.00000\t\t\t\n");
+}
+
+TEST(Trc, TwoPeopleHaveNamesOfTheirOwnAndNobodyIsATableToo) {
+  const test::TempFolder folder;
+  TrackHeader header;
+  header.skeletons = {&kLeftArm};
+  auto nobody = make_trc(folder / "nobody.trc", header);
+  ASSERT_TRUE(nobody);
+  ASSERT_TRUE((*nobody)->write(Instant{}.tracked(0)));
+  ASSERT_TRUE((*nobody)->finish());
+  EXPECT_NE(bytes_of(folder / "nobody.trc").find("\tleft_hand\t"), std::string::npos);
+  auto two = make_trc(folder / "two.trc", header);
+  Instant instant;
+  instant.people = {arm_of({}, {}, {}), arm_of({}, {}, {}, kRightArm, 5)};
+  ASSERT_TRUE((*two)->write(instant.tracked(0)));
+  ASSERT_TRUE((*two)->finish());
+  const std::string text = bytes_of(folder / "two.trc");
+  EXPECT_NE(text.find("\tright_hand\t\t\tright_shoulder_5\t"), std::string::npos) << text;
+}
+
+/// By forward kinematics over the nodes, from the file's own numbers.
+TEST(Gltf, ForwardKinematicsGivesTheJointsBack) {
+  const test::TempFolder folder;
+  constexpr int kFrames = 50;
+  const auto right = wandering_arm(kFrames, 1), left = wandering_arm(kFrames, 2, kLeftArm, 2);
+  auto sink = make_gltf(folder / "arms.glb", {});
+  ASSERT_TRUE(sink) << sink.error().what;
+  Instant instant;
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    instant.people = {right[i], left[i]};
+    ASSERT_TRUE((*sink)->write(instant.tracked(static_cast<std::int64_t>(i))));
+  }
+  ASSERT_TRUE((*sink)->finish());
+  const std::string bytes = bytes_of(folder / "arms.glb");
+  const auto word = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + at, 4);
+    return value;
+  };
+  ASSERT_EQ(bytes.substr(0, 4), "glTF");
+  EXPECT_EQ(word(4), 2u);
+  EXPECT_EQ(word(8), bytes.size());
+  const std::size_t numbers_at = 20 + word(12) + 8;
+  EXPECT_EQ(word(numbers_at - 8), bytes.size() - numbers_at);
+  const auto gltf = nlohmann::json::parse(bytes.substr(20, word(12)));
+  const auto value = [&](int accessor, std::size_t i) {
+    const auto& view = gltf["bufferViews"][gltf["accessors"][accessor]["bufferView"].get<int>()];
+    float out = 0;
+    std::memcpy(&out, bytes.data() + numbers_at + view["byteOffset"].get<std::size_t>() + 4 * i, 4);
+    return static_cast<double>(out);
+  };
+  const auto& animation = gltf["animations"][0];
+  std::map<std::pair<int, std::string>, int> outputs;  // accessor by node and what of it is animated
+  for (const auto& channel : animation["channels"])
+    outputs[{channel["target"]["node"], channel["target"]["path"]}] =
+        animation["samplers"][channel["sampler"].get<int>()]["output"];
+  EXPECT_NEAR(gltf["accessors"][animation["samplers"][0]["input"].get<int>()]["max"][0].get<double>(), (kFrames - 1) / 30.0,
+              1e-5);
+  for (std::size_t i = 0; i < kFrames; ++i)
+    for (const int arm : {0, 1}) {
+      const int root = 3 * arm;
+      EXPECT_EQ(gltf["scenes"][0]["nodes"][static_cast<std::size_t>(arm)], root);
+      const Person& want = arm == 0 ? right[i] : left[i];
+      const auto turned = [&](int node, Vec3 v) {
+        const int at = outputs.at({node, "rotation"});
+        const Vec3 u{value(at, 4 * i), value(at, 4 * i + 1), value(at, 4 * i + 2)};
+        return v + 2.0 * cross(u, cross(u, v) + value(at, 4 * i + 3) * v);
+      };
+      const auto offset = [&](int node) {
+        const auto t = gltf["nodes"][static_cast<std::size_t>(node)]["translation"];
+        return Vec3{t[0], t[1], t[2]};
+      };
+      EXPECT_EQ(gltf["nodes"][static_cast<std::size_t>(root)]["children"], nlohmann::json({root + 1}));
+      const int at = outputs.at({root, "translation"});
+      const Vec3 shoulder{value(at, 3 * i), value(at, 3 * i + 1), value(at, 3 * i + 2)};
+      const Vec3 elbow = shoulder + turned(root, offset(root + 1));
+      const Vec3 hand = elbow + turned(root, turned(root + 1, offset(root + 2)));
+      EXPECT_LT(norm(shoulder - y_up(want, kShoulder)), 1e-3) << i;
+      EXPECT_LT(norm(elbow - y_up(want, kElbow)), 1e-3) << i;
+      EXPECT_LT(norm(hand - y_up(want, kHand)), 1e-3) << i;
+    }
 }
 
 }  // namespace

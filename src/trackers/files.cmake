@@ -12,7 +12,7 @@ set(dir ${PROJECT_SOURCE_DIR}/src/trackers/body)
 target_sources(duoptic PRIVATE
   ${dir}/body.cpp ${dir}/body_tracker.cpp ${dir}/choose.cpp ${dir}/fit.cpp ${dir}/lengths.cpp ${dir}/lift.cpp ${dir}/limb_samples.cpp ${dir}/points.cpp
   ${dir}/surface_map.cpp)
-duoptic_test(trackers/body_parts ${dir}/body_parts_test.cpp)
+duoptic_test(trackers/body_parts ${dir}/body_parts_test.cpp ${dir}/choose_test.cpp)
 duoptic_test(trackers/body_tracker ${dir}/body_tracker_test.cpp)
 duoptic_test(trackers/body_clips ${dir}/body_clips_test.cpp SLOW)
 set(dir ${PROJECT_SOURCE_DIR}/src/trackers/thesis)
@@ -26,7 +26,4 @@ endif()
 duoptic_test(trackers/place_joints ${dir}/place_joints_test.cpp)
 duoptic_test(trackers/thesis_tracker ${dir}/thesis_tracker_test.cpp)
 duoptic_vulkan_test(trackers/kernels EVERY_SIZE ASSISTED SLOW ${dir}/place_joints_vk_test.cpp ${dir}/observe_joints_vk_test.cpp)
-duoptic_vulkan_test(trackers/device ${dir}/device_observer_vk_test.cpp)
-if(TEST trackers/device)
-  set_tests_properties(trackers/device PROPERTIES RUN_SERIAL TRUE)  # it measures CPU time
-endif()
+duoptic_vulkan_test(trackers/device ALONE VulkanTracking.LeavesTheCpuFree ${dir}/device_observer_vk_test.cpp)

@@ -37,6 +37,28 @@ TEST(RegionPlane, HandWorked) {
   EXPECT_FALSE(region_plane(scattered, plane)) << "no half of them agrees";
 }
 
+// Points as they are measured, up to 3/4 px off: through three of them the slope is wrong by far more than through all.
+TEST(RegionPlane, ManyPointsTellTheSlope) {
+  std::vector<PlanePoint> measured = points(0);
+  std::mt19937 rng(3);
+  for (PlanePoint& p : measured) p.d_q4 = static_cast<std::uint16_t>(p.d_q4 + rng() % 25 - 12);
+  RegionPlane plane;
+  ASSERT_TRUE(region_plane(measured, plane));
+  EXPECT_NEAR(plane.along_x_q16 / 65536.0, 3, 0.12);
+  EXPECT_NEAR(plane.along_y_q16 / 65536.0, 2, 0.2);
+}
+
+// A step of a sixteenth of a pixel amid the points is a slope of 1/20 to least squares, and 5 px off 100 columns beyond them.
+TEST(RegionPlane, AConstantIsPreferredWhereItSaysAsMuch) {
+  std::vector<PlanePoint> wall = points(0);
+  for (PlanePoint& p : wall) p.d_q4 = static_cast<std::uint16_t>(p.x < 10 ? 100 : 101);
+  RegionPlane plane;
+  ASSERT_TRUE(region_plane(wall, plane));
+  EXPECT_EQ(plane.along_x_q16, 0);
+  EXPECT_EQ(plane.along_y_q16, 0);
+  EXPECT_NEAR(plane.d_q4(5, 200), 100, 1);
+}
+
 /// A flat wall of one gray value with texture around it; disparities of a slanted plane at its left third, holes in the rest.
 struct Wall {
   static constexpr Size kSize{60, 40};

@@ -20,12 +20,16 @@ struct RegionPlane {
   }
 };
 
-/// The plane through three of the points that most points lie near: of 64 samples (a fixed sequence) the one with the greatest
-/// sum of max(0, 24 - distance in 1/16 px) over at least 128 points, evenly spaced, the first of equals. Samples whose triangle
-/// has an area of less than 32 pixels are left out.
+/// The plane that most points lie near: of planes through three points, in 64 samples (a fixed sequence), the one with the
+/// greatest sum of max(0, 24 - distance in 1/16 px) over at least 128 points, evenly spaced, the first of equals; then that of
+/// least squares through the points within 1 1/2 px of it, where its sum is greater. A constant disparity, that of one of the
+/// points compared, is preferred where its sum is nine tenths as great: a wall's points often cover a part of it, and the slope
+/// through them is what errs beyond. Samples whose triangle has an area of less than 32 pixels are left out.
 ///
 /// Errors  false, with fewer than 20 points, or where less than half of all are within 1 1/2 px of the plane
-/// Source  Fischler, Bolles, "Random sample consensus", 1981; scored as in Torr, Zisserman, "MLESAC", 2000
+/// Exact   whole numbers, but for the slopes of least squares: IEEE doubles in a fixed order
+/// Source  Fischler, Bolles, "Random sample consensus", 1981; scored as in Torr, Zisserman, "MLESAC", 2000; refined by least
+///         squares as in Chum, Matas, Kittler, "Locally optimized RANSAC", 2003
 bool region_plane(std::span<const PlanePoint> points, RegionPlane& out);
 
 }  // namespace duo
