@@ -287,7 +287,7 @@ class Round {
     if (!fifo_.empty() && !fs::is_fifo(folder_ / fifo_)) return "another's pipe is gone";
     for (const auto& set : work_.sets)
       if (const std::string fault = set_fault(set); !fault.empty()) return fault;
-    return exit_ <= 128 ? left_over() : "";
+    return exit_ == 128 + SIGKILL ? "" : left_over();
   }
 
   std::string set_fault(const std::vector<std::string>& set) const {
