@@ -134,7 +134,7 @@ TemporalNoise temporal_noise(const std::vector<std::vector<float>>& z_m) {
 DepthQuality DepthQualityMeter::quality() const {
   const State& s = *state_;
   DUO_CHECK(!s.z_m.empty());
-  Figures f = s.figures;
+  State::Figures f = s.figures;
   const TemporalNoise noise = temporal_noise(s.z_m);
   DepthQuality out{.frames = static_cast<int>(s.z_m.size()),
                    .fill_rate_percent = median(f.fill_percent),
