@@ -16,10 +16,11 @@ constexpr char kFooter[] =
     "both cameras; scores are of the frames from there on.\n"
     "median, p95: error in mm where the joint is visible; bad: of these frames, lost or off by more than 100 mm; recover: the\n"
     "most frames from coming out after 5 or more hidden ones to being tracked again (> at the end still not); hidden, h.lost:\n"
-    "median error and share lost while hidden; 3 sigma: share of seen and inferred positions inside what the tracker "
-    "claims. With --rig joints and depth are found with that rig and compared in its left camera's axes with the truth, which\n"
-    "is in the true left camera's: what a wrong rig does to distances counts as error. Depth is judged as disparity of that "
-    "rig.\n\n"
+    "median error and share lost while hidden; h.false: share called seen while hidden and off by more than 100 mm; 3 sigma:\n"
+    "share of seen and inferred positions inside what the tracker claims. Of several people the joints are the first one's;\n"
+    "identity switches are counted over all. With --rig joints and depth are found with that rig and compared in its left\n"
+    "camera's axes with the truth, which is in the true left camera's: what a wrong rig does to distances counts as error.\n"
+    "Depth is judged as disparity of that rig.\n\n"
     "Examples:\n"
     "  duoptic eval clip data/sequences/dev_easy_wave\n"
     "  duoptic eval clip clips/* --compare --json\n"
@@ -50,10 +51,13 @@ nlohmann::json to_json(const ClipScore& score) {
                                         {"recovered", s.recovered},
                                         {"hidden_median_mm", or_null(s.hidden_median_mm)},
                                         {"hidden_lost_percent", or_null(s.hidden_lost_percent)},
+                                        {"hidden_false_percent", or_null(s.hidden_false_percent)},
                                         {"inside_3_sigma_percent", or_null(s.inside_3_sigma_percent)}};
-  nlohmann::json out = {
-      {"clip", score.clip},         {"tracker", score.tracker}, {"first_frame", score.first}, {"frames", score.frames},
-      {"left_out", score.left_out}, {"fps", score.fps},         {"joints", joints},           {"depth", nullptr}};
+  nlohmann::json out = {{"clip", score.clip},         {"tracker", score.tracker},
+                        {"first_frame", score.first}, {"frames", score.frames},
+                        {"left_out", score.left_out}, {"fps", score.fps},
+                        {"joints", joints},           {"depth", nullptr},
+                        {"people", score.people},     {"identity_switches", score.identity_switches}};
   if (const auto& d = score.depth)
     out["depth"] = {{"coverage_percent", d->coverage_percent},
                     {"bad_percent", d->bad_percent},
@@ -73,13 +77,14 @@ void print_lines(const ClipScore& score) {
     const bool first = id == score.joints[0].first;
     const std::string recover =
         s.frames_to_recover ? fmt::format("{}{}", s.recovered ? "" : ">", *s.frames_to_recover) : std::string("-");
-    fmt::print("{:<18} {:<8} {:<14} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", first ? score.clip : "",
+    fmt::print("{:<18} {:<8} {:<14} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", first ? score.clip : "",
                first ? score.tracker : "", name_of(id), cell(s.median_mm, 1, ""), cell(s.p95_mm, 1, ""),
                cell(s.bad_percent, 1, "%"), recover, cell(s.hidden_median_mm, 1, ""), cell(s.hidden_lost_percent, 1, "%"),
-               cell(s.inside_3_sigma_percent, 1, "%"));
+               cell(s.hidden_false_percent, 1, "%"), cell(s.inside_3_sigma_percent, 1, "%"));
   }
   fmt::print("{:<27} {} frames from {}, {:.1f} frames/s", "", score.frames, score.first, score.fps);
   if (score.left_out > 0) fmt::print(", {} without a pair left out", score.left_out);
+  if (score.people > 1) fmt::print(", {} people, {} identity switches", score.people, score.identity_switches);
   if (score.depth)
     fmt::print(
         "; depth on the person: {:.1f} % covered, {:.1f} % off by more than 1 px, median {:.2f} px = {:.2f} %, "
@@ -98,8 +103,8 @@ Result<PipelineSetup> setup_of(const TrackingOptions& tracking, const std::files
 }
 
 void print(const std::vector<ClipScore>& scores) {
-  fmt::print("{:<18} {:<8} {:<14} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "clip", "tracker", "joint", "median", "p95",
-             "bad", "recover", "hidden", "h.lost", "3 sigma");
+  fmt::print("{:<18} {:<8} {:<14} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "clip", "tracker", "joint", "median",
+             "p95", "bad", "recover", "hidden", "h.lost", "h.false", "3 sigma");
   for (const ClipScore& score : scores) print_lines(score);
 }
 

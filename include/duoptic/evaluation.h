@@ -121,13 +121,14 @@ struct JointTruth {
 using FrameTruth = std::array<std::optional<JointTruth>, kJointIds>;
 
 /// Of truth.json: meta.selected_arm ("left" or "right"), meta.skew_ms (0 where there is none), frames[i].joints.NAME.{xyz,
-/// uv_left, vis_left, vis_right}. Names that no skeleton has are passed over.
+/// uv_left, vis_left, vis_right}; of other people frames[i].others[k].joints. Names that no skeleton has are passed over.
 struct ClipTruth {
   std::string name;
   Rig rig;
   Side arm = Side::kRight;  // the arm that moves
   double skew_ms = 0;       // how much later the right pictures were taken
   std::vector<FrameTruth> frames;
+  std::vector<std::vector<FrameTruth>> others;  // by other person, then by frame; as many as in every frame
 
   /// Errors  a frame lacks the joint
   Result<void> check(JointId joint) const;
@@ -169,6 +170,7 @@ struct JointScore {
   bool recovered = true;                         // false: at the end still not, and frames_to_recover only counts up to there
   std::optional<double> hidden_median_mm;        // over hidden frames that are not lost
   std::optional<double> hidden_lost_percent;     // of hidden frames
+  std::optional<double> hidden_false_percent;    // of hidden frames: called seen, and off by more than kBadJoint_mm
   std::optional<double> inside_3_sigma_percent;  // of seen and inferred frames, visible or not
 };
 
@@ -208,6 +210,8 @@ struct ClipScore {
   std::int64_t left_out = 0;           // those from the first on of which a camera gave no picture
   double fps = 0;                      // without scoring
   std::vector<std::pair<JointId, JointScore>> joints;
+  int people = 1;             // in the truth; the joints are the first one's
+  int identity_switches = 0;  // how often the tracked person at a true one's place has another id than the one before
   std::optional<DepthScore> depth;
 };
 

@@ -52,7 +52,7 @@ enum class SyntheticArm : std::uint8_t { kBySeed, kRight, kLeft };  // the perso
 struct SyntheticClipSetup {
   Size size = {640, 480};
   std::uint32_t seed = 1;       // room, rig and noise as in SyntheticSetup; the person's looks, place and sway
-  std::string script = "tour";  // wave, reach, sweep, behind, out, light, or tour: one after the other
+  std::string script = "tour";  // see synthetic_scripts()
   int frames = 0;               // 30 a second; 0: the script once; more than it has: it starts again
   SyntheticArm arm = SyntheticArm::kBySeed;
   double skew_s = 0;  // the right camera's shutter opens that much later than the left one's, as free-running webcams' do
@@ -61,7 +61,7 @@ struct SyntheticClipSetup {
 /// Where a joint is. It lies inside the body: what a camera sees of it is nearer.
 struct SyntheticJoint {
   JointId id = JointId::kPelvis;
-  Vec3 p_in_left_m;  // in the raw left camera
+  Vec3 p_in_left_m;                                              // in the raw left camera
   std::optional<std::array<double, 2>> uv_left_px, uv_right_px;  // in the raw pictures; none far outside of them
   bool in_left = false, in_right = false;                        // inside the picture
   bool visible_left = false, visible_right = false;              // and nothing farther in front than flesh and cloth are thick
@@ -73,14 +73,15 @@ struct SyntheticJoint {
 struct SyntheticClipFrame {
   Pair pair;
   double t_s = 0;
-  double ceiling_light = 1;  // power of the lamp
-  std::string act;           // what the arm does
-  std::vector<SyntheticJoint> joints;  // 17: of kBody without spine, chest and feet
-  Image<float> depth_left_m;        // as in SyntheticPair
-  Image<std::uint8_t> figure_left;  // 255 where that is the person
+  double ceiling_light = 1;                         // power of the lamp
+  std::string act;                                  // what the person does
+  std::vector<SyntheticJoint> joints;               // 19: of kBody without spine and chest
+  std::vector<std::vector<SyntheticJoint>> others;  // of other people, where the script has some
+  Image<float> depth_left_m;                        // as in SyntheticPair
+  Image<std::uint8_t> figure_left;                  // 255 where that is a person
 };
 
-/// A person stands before the rig, looks at it and moves one arm.
+/// A person before the rig does what a script says.
 ///
 /// Frames can be asked for in any order; the same setup gives the same bits with any number of threads.
 class SyntheticClip {
@@ -112,6 +113,9 @@ class SyntheticClip {
   std::unique_ptr<State> state_;
 };
 
+/// Of a person that stands before the rig and moves an arm: wave, reach, sweep, behind, out, light, and tour, which is all of
+/// these one after the other. Of whole bodies, of other sizes and clothes, farther away: turn once around; walk across and
+/// back; sit down and cross the legs; cross, in which a second person comes the other way.
 std::vector<std::string> synthetic_scripts();
 
 /// Renders a clip into a new folder: left.avi and right.avi (MJPEG), calibration_truth.yml, truth.json, and every tenth frame

@@ -69,7 +69,16 @@ Result<ClipTruth> load_clip(const fs::path& folder) {
   try {
     clip.skew_ms = truth.at("meta").value("skew_ms", 0.0);
     clip.arm = side_named(truth.at("meta").at("selected_arm").get<std::string>());
-    for (const auto& frame : truth.at("frames")) clip.frames.push_back(frame_of(frame.at("joints")));
+    for (const auto& frame : truth.at("frames")) {
+      clip.frames.push_back(frame_of(frame.at("joints")));
+      if (!frame.contains("others")) continue;
+      const auto& others = frame.at("others");
+      clip.others.resize(std::max(clip.others.size(), others.size()));
+      for (std::size_t k = 0; k < others.size(); ++k) clip.others[k].push_back(frame_of(others[k].at("joints")));
+    }
+    for (const auto& other : clip.others)
+      if (other.size() != clip.frames.size())
+        return Error{ErrorCode::kBadInput, fmt::format("cannot use {}: some of its frames lack a person", path.string())};
   } catch (const nlohmann::json::exception& error) {
     return Error{ErrorCode::kBadInput, fmt::format("cannot use {}: {}", path.string(), error.what())};
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -23,15 +24,58 @@ Selection clicks(const Skeleton& skeleton, const FrameTruth& truth, double jitte
   return selection;
 }
 
-/// A joint that nobody has is lost.
-JointSample sample(const JointTruth& truth, JointId id, std::span<const Person> people, const Mat3& rig_from_left) {
-  for (const Person& person : people)
-    if (const Joint* found = person.find(id)) {
-      const Vec3 off_m = found->p_in_rig_m - rig_from_left * truth.p_in_left_m;
-      return {truth.visible, found->state, 1000 * norm(off_m), 1000 * found->sigma_m()};
-    }
-  return {truth.visible, JointState::kLost, 0, 0};
+double off_m(const JointTruth& truth, const Joint& joint, const Mat3& rig_from_left) {
+  return norm(joint.p_in_rig_m - rig_from_left * truth.p_in_left_m);
 }
+
+/// Mean distance of a person's joints from the true ones; infinite without a common joint.
+double mean_off_m(const FrameTruth& truth, const Person& person, const Mat3& rig_from_left) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t j = 0; j < kJointIds; ++j)
+    if (const Joint* joint = person.find(static_cast<JointId>(j)); joint != nullptr && truth[j]) {
+      sum += off_m(*truth[j], *joint, rig_from_left);
+      ++count;
+    }
+  return count > 0 ? sum / count : std::numeric_limits<double>::infinity();
+}
+
+/// A joint that nobody has is lost. Of several people that have it, the one nearest to the true person counts.
+JointSample sample(const FrameTruth& frame, JointId id, std::span<const Person> people, const Mat3& rig_from_left) {
+  const JointTruth& truth = *frame[static_cast<std::size_t>(id)];
+  JointSample out{truth.visible, JointState::kLost, 0, 0};
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const Person& person : people) {
+    const Joint* found = person.find(id);
+    if (found == nullptr) continue;
+    const double mean_m = people.size() > 1 ? mean_off_m(frame, person, rig_from_left) : 0;
+    if (mean_m >= least_m) continue;
+    least_m = mean_m;
+    out = {truth.visible, found->state, 1000 * off_m(truth, *found, rig_from_left), 1000 * found->sigma_m()};
+  }
+  return out;
+}
+
+/// Counts how often a true person is tracked under another id than before.
+class Identities {
+ public:
+  void add(std::size_t person, const FrameTruth& truth, std::span<const Person> people, const Mat3& rig_from_left) {
+    constexpr double kThere_m = 0.4;  // mean over the joints
+    last_.resize(std::max(last_.size(), person + 1));
+    double least_m = kThere_m;
+    std::uint32_t id = 0;
+    for (const Person& found : people)
+      if (const double mean_m = mean_off_m(truth, found, rig_from_left); mean_m < least_m) least_m = mean_m, id = found.id;
+    if (id == 0) return;
+    if (last_[person] != 0 && last_[person] != id) ++switches_;
+    last_[person] = id;
+  }
+  int switches() const { return switches_; }
+
+ private:
+  std::vector<std::uint32_t> last_;  // 0: not yet found
+  int switches_ = 0;
+};
 
 /// What is scored, and whose joints have to be clicked for it.
 struct Wanted {
@@ -97,6 +141,7 @@ Result<ClipScore> score_clip(const std::filesystem::path& folder, const ClipTrut
   if (what.add_sinks) DUO_TRY(what.add_sinks(pipeline));
   std::vector<std::vector<JointSample>> samples(want.joints.size());
   DepthTally depth;
+  Identities identities;
   std::int64_t busy_ns = 0;  // without scoring, during which nothing goes on in the background
   const auto count = static_cast<std::int64_t>(truth.frames.size());
   for (std::int64_t i = -1; i < count - 1;) {
@@ -114,8 +159,12 @@ Result<ClipScore> score_clip(const std::filesystem::path& folder, const ClipTrut
     busy_ns += wall_ns() - begin_ns;
     for (std::size_t j = 0; j < want.joints.size(); ++j) {
       const JointId id = want.joints[j];
-      samples[j].push_back(sample(*frame[static_cast<std::size_t>(id)], id, pipeline.people(), rectified.rig_from_left));
+      samples[j].push_back(sample(frame, id, pipeline.people(), rectified.rig_from_left));
     }
+    const bool whole = want.skeletons.empty();  // else people are arms, and one has two
+    if (whole) identities.add(0, frame, pipeline.people(), rectified.rig_from_left);
+    for (std::size_t k = 0; whole && k < truth.others.size(); ++k)
+      identities.add(k + 1, truth.others[k][static_cast<std::size_t>(i)], pipeline.people(), rectified.rig_from_left);
     DUO_TRY_ASSIGN(const DepthTruth depth_truth, load_depth_truth(folder, i));
     depth.add(*pipeline.frame(), rectified, truth.rig.left, depth_truth);
     DUO_TRY(pipeline.write());
@@ -124,6 +173,8 @@ Result<ClipScore> score_clip(const std::filesystem::path& folder, const ClipTrut
   score.left_out = count - score.first - score.frames;
   score.fps = 1e9 * static_cast<double>(score.frames) / static_cast<double>(busy_ns);
   for (std::size_t j = 0; j < want.joints.size(); ++j) score.joints.emplace_back(want.joints[j], score_joint(samples[j]));
+  score.people = 1 + static_cast<int>(truth.others.size());
+  score.identity_switches = identities.switches();
   score.depth = depth.score();
   DUO_TRY(pipeline.finish_sinks());
   return score;

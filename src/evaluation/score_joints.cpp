@@ -51,12 +51,13 @@ std::optional<double> percentile(std::vector<double> values, double share) {
 
 JointScore score_joint(const std::vector<JointSample>& samples) {
   std::vector<double> visible_mm, hidden_mm;
-  std::int64_t visible = 0, bad = 0, hidden = 0, hidden_lost = 0, known = 0, inside = 0;
+  std::int64_t visible = 0, bad = 0, hidden = 0, hidden_lost = 0, hidden_false = 0, known = 0, inside = 0;
   for (const JointSample& s : samples) {
     const bool lost = s.state == JointState::kLost;
     (s.visible ? visible : hidden) += 1;
     if (s.visible) bad += !is_good(s);
     if (!s.visible) hidden_lost += lost;
+    if (!s.visible) hidden_false += s.state == JointState::kSeen && s.error_mm > kBadJoint_mm;
     if (lost) continue;
     (s.visible ? visible_mm : hidden_mm).push_back(s.error_mm);
     ++known;
@@ -68,6 +69,7 @@ JointScore score_joint(const std::vector<JointSample>& samples) {
   score.bad_percent = percent(bad, visible);
   score.hidden_median_mm = percentile(hidden_mm, 0.5);
   score.hidden_lost_percent = percent(hidden_lost, hidden);
+  score.hidden_false_percent = percent(hidden_false, hidden);
   score.inside_3_sigma_percent = percent(inside, known);
   score_recovery(samples, score);
   return score;

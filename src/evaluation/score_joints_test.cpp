@@ -26,8 +26,20 @@ TEST(JointScore, ByHand) {
   EXPECT_EQ(*s.bad_percent, 40);       // 2 of 5
   EXPECT_EQ(*s.hidden_median_mm, 60);  // of 60 80
   EXPECT_NEAR(*s.hidden_lost_percent, 100.0 / 3, 1e-9);
+  EXPECT_EQ(*s.hidden_false_percent, 0);
   EXPECT_EQ(*s.inside_3_sigma_percent, 50);  // 3 of 6
   EXPECT_FALSE(s.frames_to_recover);         // three hidden frames are no hiding
+}
+
+TEST(JointScore, HiddenJointsThatAreCalledSeen) {
+  const JointScore s = score_joint({
+      {false, kSeen, 101, 20},      // false
+      {false, kSeen, 100, 20},      // just not
+      {false, kInferred, 300, 20},  // says that it is a guess
+      {false, kLost, 300, 20},
+      {true, kSeen, 300, 20},  // bad, but not hidden
+  });
+  EXPECT_EQ(*s.hidden_false_percent, 25);
 }
 
 TEST(JointScore, NothingToSay) {

@@ -123,10 +123,10 @@ Json pixel(const std::optional<std::array<double, 2>>& uv_px) {
   return uv_px ? Json{rounded((*uv_px)[0], 1e3), rounded((*uv_px)[1], 1e3)} : Json();
 }
 
-Json truth_of(const SyntheticClipFrame& frame, int index, const Mat3& rig_from_left) {
-  Json joints = Json::object();
-  for (const SyntheticJoint& joint : frame.joints)
-    joints[std::string(name_of(joint.id))] = {
+Json joints_of(const std::vector<SyntheticJoint>& joints, const Mat3& rig_from_left) {
+  Json out = Json::object();
+  for (const SyntheticJoint& joint : joints)
+    out[std::string(name_of(joint.id))] = {
         {"xyz", point(joint.p_in_left_m)},
         {"xyz_rect", point(rig_from_left * joint.p_in_left_m)},
         {"uv_left", pixel(joint.uv_left_px)},
@@ -136,17 +136,23 @@ Json truth_of(const SyntheticClipFrame& frame, int index, const Mat3& rig_from_l
         {"vis_left", joint.visible_left},
         {"vis_right", joint.visible_right},
         {"surf_z_left", joint.surface_z_left_m ? Json(rounded(*joint.surface_z_left_m, 1e5)) : Json()}};
-  return {{"frame", index},
-          {"t", rounded(frame.t_s, 1e6)},
-          {"light", {rounded(frame.ceiling_light, 1e4), 1.0, 1.0}},  // ceiling lamp, window, floor lamp
-          {"joints", std::move(joints)}};
+  return out;
+}
+
+Json truth_of(const SyntheticClipFrame& frame, int index, const Mat3& rig_from_left) {
+  Json out = {{"frame", index},
+              {"t", rounded(frame.t_s, 1e6)},
+              {"light", {rounded(frame.ceiling_light, 1e4), 1.0, 1.0}},  // ceiling lamp, window, floor lamp
+              {"joints", joints_of(frame.joints, rig_from_left)}};
+  for (const auto& other : frame.others) out["others"].push_back({{"joints", joints_of(other, rig_from_left)}});
+  return out;
 }
 
 Json meta_of(const SyntheticClipSetup& setup, const Rig& rig, const std::string& name, Json events) {
   Json tolerances = Json::object();
   using enum JointId;
   for (const JointId joint :
-       {kLeftShoulder, kLeftElbow, kLeftWrist, kLeftHand, kLeftHip, kLeftKnee, kLeftAnkle, kHead, kNeck, kPelvis})
+       {kLeftShoulder, kLeftElbow, kLeftWrist, kLeftHand, kLeftHip, kLeftKnee, kLeftAnkle, kLeftFoot, kHead, kNeck, kPelvis})
     tolerances[std::string(part_of(joint))] = SyntheticClip::tolerance_m(joint);
   return {{"clip", name},
           {"width", setup.size.width},

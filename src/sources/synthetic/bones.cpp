@@ -37,8 +37,9 @@ Bones make_bones(const Pose& pose, double scale) {
   Bones out;
   out.scale = scale;
   const Vec3 hips{0, -0.93 * scale, 0};
-  out.person_from_torso = Rigid3{{}, hips + pose.sway_m} *
-                          Rigid3{about_z(pose.lean_degrees) * about_y(pose.twist_degrees), {}} * Rigid3{{}, -1.0 * hips};
+  Mat3 turn = about_z(pose.lean_degrees) * about_y(pose.twist_degrees);
+  if (pose.bow_degrees != 0) turn = turn * about_x(pose.bow_degrees);
+  out.person_from_torso = Rigid3{{}, hips + pose.hips_m} * Rigid3{turn, {}} * Rigid3{{}, -1.0 * hips};
   const auto torso = [&](double x, double y, double z) { return out.person_from_torso * (scale * Vec3{x, y, z}); };
   out.pelvis_m = torso(0, -0.94, 0.005);
   out.neck_m = torso(0, -1.48, 0.015);
@@ -57,8 +58,14 @@ Bones make_bones(const Pose& pose, double scale) {
     out.curl_degrees[side] = arm.curl_degrees;
     out.hands_m[side] = limb.end_m + scale * kPalm_m * hand;
 
-    const Vec3 ankle = scale * Vec3{s * 0.115, -0.095, 0.03};
-    out.legs[side] = reach(torso(s * 0.092, -0.915, 0.01), ankle, {s * 0.15, 0, -1}, scale * kThigh_m, scale * kShin_m);
+    const LegPose& leg = pose.legs[side];
+    const auto mirrored = [s](Vec3 v) { return Vec3{s * v.x, v.y, v.z}; };
+    const Vec3 hip = torso(s * 0.092, -0.915, 0.01);
+    out.legs[side] = reach(hip, scale * mirrored(leg.ankle_m), mirrored(leg.knee), scale * kThigh_m, scale * kShin_m);
+    Rigid3& foot = out.legs[side].person_from_end;
+    foot = {{}, out.legs[side].end_m};
+    if (leg.toes_degrees != 0) foot.rotation = about_x(leg.toes_degrees);
+    out.feet_m[side] = foot * (scale * Vec3{s * 0.03, 0.06, -0.13});
   }
   return out;
 }

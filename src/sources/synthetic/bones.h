@@ -22,10 +22,19 @@ struct ArmPose {
   double curl_degrees = 18;
 };
 
+/// A leg in the person's frame: x outwards, y down, z to the back, of a person of 1.75 m, whichever side.
+struct LegPose {
+  Vec3 ankle_m{0.115, -0.095, 0.03};
+  Vec3 knee{0.15, 0, -1};   // the knee is bent towards there
+  double toes_degrees = 0;  // how far they point down
+};
+
 struct Pose {
   std::array<ArmPose, 2> arms;
-  Vec3 sway_m;                                 // of the hips
+  std::array<LegPose, 2> legs;
+  Vec3 hips_m;                                 // off where they are when the person stands
   double lean_degrees = 0, twist_degrees = 0;  // of the torso, about z and y
+  double bow_degrees = 0;                      // of the torso, forwards
   double look_degrees = 0, nod_degrees = 0;    // of the head
 };
 
@@ -40,6 +49,7 @@ struct Bones {
   Rigid3 person_from_torso, person_from_head;  // at rest, the torso's frame is the person's
   std::array<Limb, 2> arms, legs;
   std::array<Vec3, 2> hands_m;  // palm centres
+  std::array<Vec3, 2> feet_m;   // where the toes begin
   std::array<double, 2> curl_degrees{};
   Vec3 head_m, neck_m, pelvis_m;
 };

@@ -7,6 +7,7 @@
 #include "duoptic/synthetic.h"
 #include "sources/synthetic/backdrop.h"
 #include "sources/synthetic/figure.h"
+#include "sources/synthetic/furniture.h"
 #include "sources/synthetic/mounting.h"
 #include "sources/synthetic/noise.h"
 #include "sources/synthetic/room.h"
@@ -16,9 +17,9 @@ namespace duo {
 
 using namespace synthetic;
 
-// Where rig and person stand.
+// Where the rig stands, and where the people do at first.
 struct Staging {
-  Rigid3 world_from_rig, world_from_person;
+  Rigid3 world_from_rig, world_from_stage;
 };
 
 namespace {
@@ -27,7 +28,8 @@ constexpr double kFramesPerSecond = 30;
 
 Staging stage(const SyntheticClipSetup& setup, double scale) {
   Random random(setup.seed ^ 0x57a6eU);
-  const double aside = random.uniform(-3, 3), turned = random.uniform(-6, 6), distance_m = random.uniform(1.88, 2.02);
+  const double aside = random.uniform(-3, 3), turned = random.uniform(-6, 6);
+  const double farther_m = is_of_whole_body(setup.script) ? 0.35 : 0, distance_m = farther_m + random.uniform(1.88, 2.02);
   // The camera is tilted so that the picture's upper edge lies a hand above the hair, whatever its shape.
   constexpr double kHair_m = 1.78, kRoom_m = 0.1;
   const Camera camera = ideal_camera(setup.size);
@@ -38,6 +40,18 @@ Staging stage(const SyntheticClipSetup& setup, double scale) {
   return {{turn * tilt, {}}, {turn * about_y(turned), turn * Vec3{0, 0, distance_m} + Vec3{0, kFloor_m, 0}}};
 }
 
+// The room; with a chair for those who sit down.
+Scene room_of(const SyntheticClipSetup& setup, const Staging& staging) {
+  constexpr double kBehind_m = 0.4;
+  Scene room = living_room(setup.seed, 0, Floor::kFree);
+  if (setup.script != "sit") return room;
+  const int wood = room.add({.texture = Texture::kWood, .a = srgb(0x8a5a38), .b = srgb(0x3a2212), .gloss = 0.15});
+  const int cushion = room.add({.texture = Texture::kKnit, .a = srgb(0xc8442f), .b = srgb(0xd8cbb0), .scale_m = 0.03});
+  add_chair({room, staging.world_from_stage * Rigid3{{}, {0, 0, kBehind_m}}}, wood, cushion);
+  room.ready();
+  return room;
+}
+
 struct NamedJoint {
   JointId id;
   Vec3 p_in_person_m;
@@ -45,22 +59,15 @@ struct NamedJoint {
 
 std::vector<NamedJoint> joints_of(const Bones& bones) {
   const auto &l = bones.arms[kLeftSide], &r = bones.arms[kRightSide], &ll = bones.legs[kLeftSide], &rl = bones.legs[kRightSide];
-  return {{JointId::kLeftShoulder, l.root_m},
-          {JointId::kLeftElbow, l.middle_m},
-          {JointId::kLeftWrist, l.end_m},
-          {JointId::kLeftHand, bones.hands_m[kLeftSide]},
-          {JointId::kLeftHip, ll.root_m},
-          {JointId::kLeftKnee, ll.middle_m},
-          {JointId::kLeftAnkle, ll.end_m},
-          {JointId::kRightShoulder, r.root_m},
-          {JointId::kRightElbow, r.middle_m},
-          {JointId::kRightWrist, r.end_m},
-          {JointId::kRightHand, bones.hands_m[kRightSide]},
-          {JointId::kRightHip, rl.root_m},
-          {JointId::kRightKnee, rl.middle_m},
-          {JointId::kRightAnkle, rl.end_m},
-          {JointId::kHead, bones.head_m},
-          {JointId::kNeck, bones.neck_m},
+  return {{JointId::kLeftShoulder, l.root_m},  {JointId::kLeftElbow, l.middle_m},
+          {JointId::kLeftWrist, l.end_m},      {JointId::kLeftHand, bones.hands_m[kLeftSide]},
+          {JointId::kLeftHip, ll.root_m},      {JointId::kLeftKnee, ll.middle_m},
+          {JointId::kLeftAnkle, ll.end_m},     {JointId::kLeftFoot, bones.feet_m[kLeftSide]},
+          {JointId::kRightShoulder, r.root_m}, {JointId::kRightElbow, r.middle_m},
+          {JointId::kRightWrist, r.end_m},     {JointId::kRightHand, bones.hands_m[kRightSide]},
+          {JointId::kRightHip, rl.root_m},     {JointId::kRightKnee, rl.middle_m},
+          {JointId::kRightAnkle, rl.end_m},    {JointId::kRightFoot, bones.feet_m[kRightSide]},
+          {JointId::kHead, bones.head_m},      {JointId::kNeck, bones.neck_m},
           {JointId::kPelvis, bones.pelvis_m}};
 }
 
@@ -94,8 +101,11 @@ Seen look_at(Vec3 p_in_world, const Camera& camera, const Rigid3& world_from_cam
 struct SyntheticClip::State {
   SyntheticClipSetup setup;
   Pool pool;
-  Looks looks;
-  Script script;
+  struct Actor {
+    Looks looks;
+    Script script;
+  };
+  std::vector<Actor> actors;
   Staging staging;
   Mounting mounts;
   Rig rig;
@@ -106,51 +116,70 @@ struct SyntheticClip::State {
   State(const SyntheticClipSetup& wanted, int threads, int arm)
       : setup(wanted),
         pool(threads),
-        looks(looks_of(setup.seed)),
-        script(acts_of(setup.script), arm, setup.seed),
-        staging(stage(setup, looks.scale)),
+        actors(actors_of(setup, arm)),
+        staging(stage(setup, actors.front().looks.scale)),
         mounts(mounting({.size = setup.size, .seed = setup.seed})),
         rig(rig_of(mounts)),
-        room(living_room(setup.seed, 0, Floor::kFree)),
+        room(room_of(setup, staging)),
         world_from_left(staging.world_from_rig * mounts.left.rig_from_camera),
         world_from_right(staging.world_from_rig * mounts.right.rig_from_camera),
         left(pool, room, mounts.left.camera, world_from_left),
         right(pool, room, mounts.right.camera, world_from_right) {
     setup.arm = arm == kRightSide ? SyntheticArm::kRight : SyntheticArm::kLeft;
-    if (setup.frames == 0) setup.frames = static_cast<int>(std::lround(script.length_s() * kFramesPerSecond));
+    if (setup.frames == 0) setup.frames = static_cast<int>(std::lround(actors.front().script.length_s() * kFramesPerSecond));
   }
 
-  Bones skeleton(const Script::Moment& moment) const { return make_bones(moment.pose, looks.scale); }
-
-  Scene figure(const Bones& bones, const Lamps& lamps) const {
-    Scene scene;
-    add_figure(scene, staging.world_from_person, bones, looks);
-    light_like(room, lamps, scene);
-    scene.ready();
-    return scene;
+  static std::vector<Actor> actors_of(const SyntheticClipSetup& setup, int arm) {
+    const bool any_body = is_of_whole_body(setup.script);
+    std::vector<Actor> out;
+    out.push_back({any_body ? passer_by_of(setup.seed) : looks_of(setup.seed), {acts_of(setup.script), arm, setup.seed}});
+    if (auto acts = second_acts_of(setup.script); !acts.empty()) {
+      const std::uint32_t seed = mix(setup.seed);
+      out.push_back({passer_by_of(seed), {std::move(acts), 1 - arm, seed}});
+    }
+    return out;
   }
 
+  // A person at one moment.
+  struct Posed {
+    Rigid3 world_from_person;
+    Bones bones;
+  };
   // What there is to see at one moment.
   struct Shot {
-    Script::Moment moment;
+    std::string_view act;
     Lamps lamps;
-    Bones bones;
-    Scene figure;
+    std::vector<Posed> people;
+    Scene figures;
   };
   Shot shot(double t_s) const {
-    const Script::Moment moment = script.at(t_s);
-    const Lamps lamps{moment.lamp};
-    const Bones bones = skeleton(moment);
-    return {moment, lamps, bones, figure(bones, lamps)};
+    Shot out;
+    for (const Actor& actor : actors) {
+      const Script::Moment moment = actor.script.at(t_s);
+      if (out.people.empty()) out.act = moment.act, out.lamps = {moment.lamp};
+      const Posed posed = {staging.world_from_stage * moment.stage_from_person, make_bones(moment.pose, actor.looks.scale)};
+      add_figure(out.figures, posed.world_from_person, posed.bones, actor.looks);
+      out.people.push_back(posed);
+    }
+    light_like(room, out.lamps, out.figures);
+    out.figures.ready();
+    return out;
   }
 
-  SyntheticJoint joint(const NamedJoint& named, const Shot& shot, const NamedJoint& right_named, const Shot& right_shot) const {
-    const auto in_world = [&](const NamedJoint& j) { return staging.world_from_person * j.p_in_person_m; };
-    const Vec3 p = in_world(named);
-    const double tolerance = tolerance_m(named.id);
-    const Seen l = look_at(p, rig.left, world_from_left, room, shot.figure, tolerance),
-               r = look_at(in_world(right_named), rig.right, world_from_right, room, right_shot.figure, tolerance);
-    return {named.id, inverse(world_from_left) * p, l.uv_px, r.uv_px, l.in, r.in, l.visible, r.visible, l.surface_z_m};
+  std::vector<SyntheticJoint> joints(std::size_t person, const Shot& shot, const Shot& right_shot) const {
+    std::vector<SyntheticJoint> out;
+    const Posed &posed = shot.people[person], &right_posed = right_shot.people[person];
+    const auto named = joints_of(posed.bones), right_named = joints_of(right_posed.bones);
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      const JointId id = named[i].id;
+      const Vec3 p = posed.world_from_person * named[i].p_in_person_m,
+                 right_p = right_posed.world_from_person * right_named[i].p_in_person_m;
+      const double tolerance = tolerance_m(id);
+      const Seen l = look_at(p, rig.left, world_from_left, room, shot.figures, tolerance),
+                 r = look_at(right_p, rig.right, world_from_right, room, right_shot.figures, tolerance);
+      out.push_back({id, inverse(world_from_left) * p, l.uv_px, r.uv_px, l.in, r.in, l.visible, r.visible, l.surface_z_m});
+    }
+    return out;
   }
 };
 
@@ -186,25 +215,25 @@ SyntheticClipFrame SyntheticClip::frame(int index) {
   SyntheticClipFrame out;
   out.t_s = index / kFramesPerSecond;
   const State::Shot shot = s.shot(out.t_s), right_shot = s.shot(out.t_s + s.setup.skew_s);
-  out.act = shot.moment.act;
-  out.ceiling_light = shot.moment.lamp;
+  out.act = shot.act;
+  out.ceiling_light = shot.lamps.ceiling;
 
   const SyntheticSetup at{.size = s.setup.size, .seed = s.setup.seed, .t_s = out.t_s};
-  Backdrop::Drawn left = s.left.draw(s.pool, shot.figure, shot.lamps),
-                  right = s.right.draw(s.pool, right_shot.figure, right_shot.lamps);
+  Backdrop::Drawn left = s.left.draw(s.pool, shot.figures, shot.lamps),
+                  right = s.right.draw(s.pool, right_shot.figures, right_shot.lamps);
   out.pair.left = taken(develop(s.pool, left.colors, webcam(at, 0)), out.t_s);
   out.pair.right = taken(develop(s.pool, right.colors, webcam(at, 1)), out.t_s + s.setup.skew_s);
   out.pair.sequence = out.pair.left.sequence = out.pair.right.sequence = static_cast<std::uint64_t>(index);
   out.depth_left_m = std::move(left.z_m);
   out.figure_left = std::move(left.is_figure);
-  const auto joints = joints_of(shot.bones), right_joints = joints_of(right_shot.bones);
-  for (std::size_t i = 0; i < joints.size(); ++i) out.joints.push_back(s.joint(joints[i], shot, right_joints[i], right_shot));
+  out.joints = s.joints(0, shot, right_shot);
+  for (std::size_t person = 1; person < s.actors.size(); ++person) out.others.push_back(s.joints(person, shot, right_shot));
   return out;
 }
 
 SyntheticClip::Pinhole SyntheticClip::pinhole(int index) {
   State& s = *state_;
-  const Scene figure = s.figure(s.skeleton(s.script.at(index / kFramesPerSecond)), {});
+  const Scene figure = s.shot(index / kFramesPerSecond).figures;
   Camera camera = s.rig.left;
   camera.distortion = {};
   const Size size = camera.size;
@@ -222,8 +251,8 @@ SyntheticClip::Pinhole SyntheticClip::pinhole(int index) {
 
 double SyntheticClip::tolerance_m(JointId joint) {
   constexpr std::pair<const char*, double> kTolerances[] = {
-      {"shoulder", 0.14}, {"elbow", 0.1},  {"wrist", 0.065}, {"hand", 0.06}, {"hip", 0.17},
-      {"knee", 0.1},      {"ankle", 0.09}, {"head", 0.16},   {"neck", 0.1},  {"pelvis", 0.18}};
+      {"shoulder", 0.14}, {"elbow", 0.1}, {"wrist", 0.065}, {"hand", 0.06}, {"hip", 0.17},   {"knee", 0.1},
+      {"ankle", 0.09},    {"foot", 0.08}, {"head", 0.16},   {"neck", 0.1},  {"pelvis", 0.18}};
   for (const auto& [part, tolerance] : kTolerances)
     if (part_of(joint) == part) return tolerance;
   DUO_CHECK(false);

@@ -117,7 +117,7 @@ TEST(SyntheticPerson, TruthAgreesWithLensAndDepth) {
     int visible = 0;
     for (int i = 0; i < clip.setup().frames; i += 61) {
       const SyntheticClipFrame frame = clip.frame(i);
-      ASSERT_EQ(frame.joints.size(), 17U);
+      ASSERT_EQ(frame.joints.size(), 19U);
       for (const SyntheticJoint& j : frame.joints) {
         EXPECT_TRUE(!j.visible_left || j.in_left);
         if (j.uv_left_px) {
@@ -198,14 +198,20 @@ TEST(SyntheticPerson, BonesKeepTheirLengths) {
 
 // An adult's arm: below 4 m/s, and no jumps.
 TEST(SyntheticPerson, MovesSmoothly) {
-  const Script script(acts_of("tour"), kRightSide, 1);
-  Vec3 before;
-  for (int i = 0; i < script.length_s() * 30; ++i) {
-    const Vec3 hand = make_bones(script.at(i / 30.0).pose, 1).hands_m[kRightSide];
-    if (i > 0) {
-      EXPECT_LT(norm(hand - before) * 30, 4) << i;
+  for (const std::string& name : synthetic_scripts()) {
+    const Script script(acts_of(name), kRightSide, 1);
+    Vec3 hand_before, foot_before;
+    for (int i = 0; i < script.length_s() * 30; ++i) {
+      const Script::Moment moment = script.at(i / 30.0);
+      const Bones bones = make_bones(moment.pose, 1);
+      const Vec3 hand = moment.stage_from_person * bones.hands_m[kRightSide], foot = moment.stage_from_person * bones.feet_m[0];
+      if (i > 0) {
+        EXPECT_LT(norm(hand - hand_before) * 30, 4) << name << i;
+        EXPECT_LT(norm(foot - foot_before) * 30, 5) << name << i;
+      }
+      hand_before = hand;
+      foot_before = foot;
     }
-    before = hand;
   }
 }
 

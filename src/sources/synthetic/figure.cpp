@@ -22,7 +22,7 @@ struct Form {
 // The lobes that hang on the bones of one shape. Points are given in a bone's frame, in metres of a person of 1.75 m.
 class Flesh {
  public:
-  explicit Flesh(double scale) : scale_(scale) {}
+  explicit Flesh(double scale, double girth = 1) : scale_(scale), girth_(girth) {}
 
   /// The bone that the next lobes hang on, and where it lies in the resting body.
   void on(const Rigid3& person_from_bone, const Rigid3& rest_from_bone) {
@@ -38,8 +38,8 @@ class Flesh {
     const Mat3 turn = transposed(Mat3::from_rows(x, y, z));
     Lobe lobe{person_from_bone_ * Rigid3{turn, scale_ * from_m}, rest_from_bone_ * Rigid3{turn, scale_ * from_m}};
     lobe.length_m = scale_ * length;
-    lobe.from_m = scale_ * from_radius_m;
-    lobe.to_m = scale_ * to_radius_m;
+    lobe.from_m = scale_ * girth_ * from_radius_m;
+    lobe.to_m = scale_ * girth_ * to_radius_m;
     lobe.flat = form.flat;
     lobe.soft_m = scale_ * form.soft_m;
     lobe.cut_m = scale_ * form.cut_m;
@@ -61,7 +61,7 @@ class Flesh {
   }
 
  private:
-  double scale_;
+  double scale_, girth_;
   Rigid3 person_from_bone_, rest_from_bone_;
   std::vector<Lobe> lobes_;
 };
@@ -125,7 +125,7 @@ struct Dresser {
   }
 
   void shirt(int material) const {
-    Flesh f(bones.scale);
+    Flesh f(bones.scale, looks.girth);
     f.on(bones.person_from_torso, {});
     constexpr double kHem_m = -0.865;
     f.lobe({0, -1.31, -0.008}, {0, -1.14, 0.0}, 0.164, 0.152, {.flat = 1.42});
@@ -152,7 +152,7 @@ struct Dresser {
   }
 
   void trousers(int material) const {
-    Flesh f(bones.scale);
+    Flesh f(bones.scale, looks.girth);
     f.on(bones.person_from_torso, {});
     f.lobe({0, -0.99, 0.004}, {0, -0.9, 0.008}, 0.14, 0.142, {.flat = 1.36});
     for (int side = 0; side < 2; ++side) {
@@ -167,7 +167,7 @@ struct Dresser {
   void shoes(int material) const {
     for (int side = 0; side < 2; ++side) {
       Flesh f(bones.scale);
-      f.on({{}, bones.legs[side].end_m}, {});
+      f.on(bones.legs[side].person_from_end, {});
       f.lobe({0, 0.045, 0.02}, {outwards(side) * 0.03, 0.06, -0.13}, 0.046, 0.036, {.flat = 1.2, .thin = {0, 1, 0}});
       put(f, material);
     }
@@ -255,6 +255,23 @@ Looks looks_of(std::uint32_t seed) {
   out.shirt = {.texture = shirt.texture, .a = srgb(shirt.a), .b = srgb(shirt.b), .c = srgb(shirt.c), .scale_m = shirt.scale_m};
   out.trousers = {.texture = Texture::kDenim, .a = srgb(style % 2 == 0 ? 0x4a6488 : 0x3a3d46), .b = srgb(0xc2ccd8)};
   out.shoes = {.texture = Texture::kSpeckle, .a = srgb(0x3a2a22), .b = srgb(0x5a4638), .gloss = 0.2};
+  return out;
+}
+
+Looks passer_by_of(std::uint32_t seed) {
+  Random random(seed ^ 0x9a55b1U);
+  constexpr std::array<Texture, 4> kWeaves = {Texture::kPrint, Texture::kStripes, Texture::kPlaid, Texture::kKnit};
+  constexpr std::array<std::uint32_t, 8> kColors = {0x8c2f39, 0x2b4162, 0x3f6b4c, 0xd8c9a8,
+                                                    0x5d4a66, 0x2a2a2e, 0xc07a3a, 0xb9c4cc};
+  Looks out = looks_of(random.bits());
+  out.scale = random.uniform(0.9, 1.06);
+  out.girth = random.uniform(0.93, 1.12);
+  out.shirt.texture = kWeaves[random.pick(4)];
+  out.shirt.a = srgb(kColors[random.pick(8)]);
+  out.shirt.b = srgb(kColors[random.pick(8)]);
+  out.shirt.c = srgb(kColors[random.pick(8)]);
+  out.shirt.scale_m = random.uniform(0.04, 0.1);
+  out.trousers.a = srgb(kColors[random.pick(8)]);
   return out;
 }
 

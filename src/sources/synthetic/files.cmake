@@ -23,3 +23,4 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/webcam.cpp)
 duoptic_test(sources/synthetic ${PROJECT_SOURCE_DIR}/src/sources/synthetic/synthetic_test.cpp)
 duoptic_test(sources/synthetic_clip ${PROJECT_SOURCE_DIR}/src/sources/synthetic/clip_test.cpp)
+duoptic_test(sources/synthetic_whole_body ${PROJECT_SOURCE_DIR}/src/sources/synthetic/whole_body_test.cpp)
