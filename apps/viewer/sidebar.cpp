@@ -217,16 +217,23 @@ void Sidebar::put_joints(const Shown* shown) const {
   if (shown == nullptr || shown->people.empty()) return;
   title(metric_ ? "Joints, metres" : "Joints, not metric");
   if (!ImGui::BeginTable("joints", 6)) return;
-  const std::pair<const char*, float> columns[] = {{"", 1.35f}, {"", 1.3f}, {"x", 1},
-                                                   {"y", 1},    {"z", 1},   {metric_ ? "\u00b1 cm" : "\u00b1", 0.9f}};
+  const std::pair<const char*, float> columns[] = {{"", 2.0f}, {"", 1.3f}, {"x", 1},
+                                                   {"y", 1},   {"z", 1},   {metric_ ? "\u00b1 cm" : "\u00b1", 0.9f}};
   for (const auto& [name, share] : columns) ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, share);
   ImGui::TableHeadersRow();
-  for (const Person& person : shown->people)
+  for (const Person& person : shown->people) {
+    if (shown->people.size() > 1) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      colored(kFaint, fmt::format("person {}", person.id));
+    }
     for (std::size_t j = 0; j < person.count(); ++j) {
       const Joint& k = person.joints[j];
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(part_of(person.skeleton->joints[j].id).data());
+      std::string joint(name_of(person.skeleton->joints[j].id));  // with its side
+      std::ranges::replace(joint, '_', ' ');
+      ImGui::TextUnformatted(joint.c_str());
       ImGui::TableNextColumn();
       ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(color_of(k.state)), "%s", word_of(k.state));
       if (k.state == JointState::kLost) continue;
@@ -237,6 +244,7 @@ void Sidebar::put_joints(const Shown* shown) const {
       ImGui::TableNextColumn();
       ImGui::TextUnformatted(fmt::format("{:.1f}", 100 * k.sigma_m()).c_str());
     }
+  }
   ImGui::EndTable();
 }
 
