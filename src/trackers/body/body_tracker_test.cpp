@@ -7,6 +7,7 @@
 #include "duoptic/engine.h"
 #include "duoptic/synthetic.h"
 #include "duoptic/tracker.h"
+#include "tests/agree.h"
 #include "tests/allocations.h"
 #include "trackers/body/body_tracker.h"
 
@@ -115,6 +116,20 @@ TEST(BodyTracker, OneAndTwoThreadsGiveTheSameBits) {
   EXPECT_EQ(bytes_of(one->track(*person.frames[0])), bytes_of(two->track(*person.frames[0])));
 }
 
+TEST(BodyTracker, EveryInstructionSetGivesTheSameBits) {
+  const RenderedPerson& person = RenderedPerson::get();
+  std::string want;
+  test::each_target([&](const std::string& target) {
+    if (target == "EMU128") return;  // the networks' own tests run it, slowly
+    std::string got;
+    const auto tracker = body_tracker(person.rig, person.rectified, 1);
+    for (int i = 0; i < 2; ++i) got += bytes_of(tracker->track(*person.frames[static_cast<std::size_t>(i)]));
+    EXPECT_FALSE(got.empty());
+    if (want.empty()) want = got;
+    EXPECT_TRUE(got == want) << target;
+  });
+}
+
 TEST(BodyTracker, AllocatesNothingOnceAPersonIsTracked) {
   const RenderedPerson& person = RenderedPerson::get();
   const auto tracker = body_tracker(person.rig, person.rectified, 1);
@@ -180,6 +195,92 @@ TEST(BodyTracker, ManySmallPeopleNeitherCrashNorExceedEight) {
         frame.disparity.d_q4.at(y, x) = source.disparity.d_q4.at(from_y, from_x);
       }
     EXPECT_LE(tracker->track(frame).size(), 8u);
+  }
+}
+
+/// A frame whose pixels come from where `from` says, with disparities so many times as large.
+template <class From>
+Frame composed(const Frame& source, From from) {
+  Frame frame = copy_of(source);
+  for (int y = 0; y < frame.color.height(); ++y)
+    for (int x = 0; x < frame.color.width(); ++x) {
+      const auto [from_x, from_y, nearer] = from(x, y);
+      frame.color.at(y, x) = source.color.at(from_y, from_x);
+      const int q4 = source.disparity.d_q4.at(from_y, from_x);
+      frame.disparity.d_q4.at(y, x) = static_cast<std::uint16_t>(q4 == Disparity::kNone ? q4 : q4 * nearer);
+    }
+  return frame;
+}
+struct FromPixel {
+  int x, y;
+  double nearer;
+};
+
+// A mirror shows a person behind the wall that does what the one before it does, with the other hand.
+TEST(BodyTracker, BesideAMirrorThereAreTwoAndEachKeepsItsNumber) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  for (int i = 0; i < kFrames; ++i) {
+    const int width = person.rectified.size.width;
+    const Frame frame = composed(*person.frames[static_cast<std::size_t>(i)], [&](int x, int y) {
+      return x < width / 2 ? FromPixel{x + width / 4, y, 1} : FromPixel{width - 1 - x + width / 4, y, 0.6};
+    });
+    const auto people = tracker->track(frame);
+    ASSERT_LE(people.size(), 2u);
+    for (const Person& found : people) EXPECT_LE(found.id, 2u) << i;
+    if (people.size() < 2) continue;
+    const double apart_m = people[0].find(JointId::kPelvis)->p_in_rig_m.z - people[1].find(JointId::kPelvis)->p_in_rig_m.z;
+    EXPECT_GT(std::abs(apart_m), 0.6) << i;
+  }
+}
+
+TEST(BodyTracker, OfAPersonHalfAMetreAwayOnlyWhatIsInThePictureIsSeen) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  constexpr int kNearer = 4;
+  const Size size = person.rectified.size;
+  for (int i = 0; i < kFrames; ++i) {
+    const Frame frame = composed(*person.frames[static_cast<std::size_t>(i)], [&](int x, int y) {
+      return FromPixel{size.width / 2 + (x - size.width / 2) / kNearer, size.height / 6 + y / kNearer, kNearer};
+    });
+    for (const Person& found : tracker->track(frame))
+      for (std::size_t j = 0; j < found.count(); ++j) {
+        if (found.joints[j].state != JointState::kSeen) continue;
+        const Vec3 p = found.joints[j].p_in_rig_m;
+        const Vec2 at = person.rectified.project(p);
+        EXPECT_GT(p.z, 0.2) << name_of(kBody.joints[j].id);
+        EXPECT_LT(p.z, 1.2) << name_of(kBody.joints[j].id);
+        EXPECT_TRUE(at.x > -25 && at.y > -25 && at.x < size.width + 25 && at.y < size.height + 25)
+            << name_of(kBody.joints[j].id) << " at " << at.x << " " << at.y;
+      }
+  }
+}
+
+// Trunk, head, tail and four legs, brown and mottled, 1.5 m away before a wall.
+TEST(BodyTracker, ADogIsNoPerson) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  const auto is_dog = [](int x, int y) {
+    const auto ellipse = [&](double cx, double cy, double rx, double ry) {
+      return (x - cx) * (x - cx) / (rx * rx) + (y - cy) * (y - cy) / (ry * ry) < 1;
+    };
+    const bool leg = y > 150 && y < 195 &&
+                     (std::abs(x - 120) < 5 || std::abs(x - 132) < 5 || std::abs(x - 185) < 5 || std::abs(x - 196) < 5);
+    return leg || ellipse(158, 145, 50, 20) || ellipse(215, 118, 20, 16) || ellipse(233, 124, 10, 7) ||
+           ellipse(105, 122, 5, 20);
+  };
+  std::mt19937 random(5);
+  for (int i = 0; i < 9; ++i) {  // so long that every part of the picture is searched once
+    Frame frame = copy_of(*person.frames[0]);
+    for (int y = 0; y < frame.color.height(); ++y)
+      for (int x = 0; x < frame.color.width(); ++x) {
+        const bool dog = is_dog(x, y);
+        const auto shade = static_cast<std::uint8_t>((dog ? 90 : 190) + random() % 20);
+        const auto paler = [&](int percent) { return static_cast<std::uint8_t>(shade * percent / 100); };
+        frame.color.at(y, x) = dog ? Rgb8{shade, paler(70), paler(45)} : Rgb8{shade, shade, paler(92)};
+        frame.disparity.d_q4.at(y, x) = dog ? 360 : 180;
+      }
+    EXPECT_TRUE(tracker->track(frame).empty()) << i;
   }
 }
 
