@@ -12,7 +12,7 @@ set(dir ${PROJECT_SOURCE_DIR}/src/trackers/body)
 target_sources(duoptic PRIVATE
   ${dir}/body.cpp ${dir}/body_tracker.cpp ${dir}/choose.cpp ${dir}/fit.cpp ${dir}/lengths.cpp ${dir}/lift.cpp ${dir}/limb_samples.cpp ${dir}/points.cpp
   ${dir}/surface_map.cpp)
-duoptic_test(trackers/body_parts ${dir}/body_parts_test.cpp)
+duoptic_test(trackers/body_parts ${dir}/body_parts_test.cpp ${dir}/choose_test.cpp)
 duoptic_test(trackers/body_tracker ${dir}/body_tracker_test.cpp)
 duoptic_test(trackers/body_clips ${dir}/body_clips_test.cpp SLOW)
 set(dir ${PROJECT_SOURCE_DIR}/src/trackers/thesis)

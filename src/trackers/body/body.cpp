@@ -139,12 +139,13 @@ double Body::unlike(const FrameView& frame, const SeenBody& seen) const {
   return std::sqrt(square(off) + square(deep) + std::min(other, 1.0) / 4);
 }
 
-void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hands) {
+void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hands, std::span<const Places* const> nearer) {
   Scene scene;
   Choices chosen;
   scene.depth = frame.depth;
   scene.lengths = &lengths_;
   scene.map = &map_;
+  scene.nearer = nearer;
 
   predict(scene, frame.frame_s);
   detect(frame, seen, hands, scene);

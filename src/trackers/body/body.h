@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "duoptic/person.h"
 #include "trackers/body/fit.h"
@@ -40,7 +41,8 @@ class Body {
   struct Hands {
     std::array<const SeenHand*, 2> seen = {};  // left, right; null: not asked
   };
-  void track(const FrameView& frame, const SeenBody& seen, const Hands& hands);
+  /// `nearer`: people before this one, who were tracked in this frame.
+  void track(const FrameView& frame, const SeenBody& seen, const Hands& hands, std::span<const Places* const> nearer = {});
   /// A frame in which nothing was seen of the person.
   void miss();
 

@@ -5,32 +5,12 @@
 #include <cmath>
 
 #include "trackers/body/fit.h"
+#include "trackers/body/standing.h"
 
 namespace duo::body {
 namespace {
 
-using enum JointId;
-
-/// 400 px focal length, 0.1 m baseline: 40 m px.
-Rectified geometry() {
-  Rectified out;
-  static_cast<Pinhole&>(out) = {400, 160, 120, 0.1};
-  out.size = {320, 240};
-  return out;
-}
-
-std::uint16_t q4_at(double z_m) { return static_cast<std::uint16_t>(std::lround(16 * (40 / z_m - DepthView::kShort_px))); }
-
-struct Map {
-  Rectified geometry_ = geometry();
-  Image<std::uint16_t> d_q4 = Image<std::uint16_t>({320, 240});
-  Map() { fill({0, 0, 320, 240}, 0); }
-  void fill(Window window, double z_m) {
-    for (int y = window.y; y < window.y_end(); ++y)
-      for (int x = window.x; x < window.x_end(); ++x) d_q4.at(y, x) = z_m > 0 ? q4_at(z_m) : Disparity::kNone;
-  }
-  DepthView view() const { return {d_q4.view(), &geometry_}; }
-};
+using namespace test;  // NOLINT: the made-up person
 
 TEST(BodyLift, AWindowOverTwoSurfacesGivesBothNearestFirst) {
   Map map;
@@ -151,133 +131,6 @@ TEST(BodyPoints, TheLineAcrossTurnsWithTheViewingRay) {
   const Across beside = across_of(body, {2, 0, 2});  // 45 degrees to the right: who faces the camera there turns with it
   EXPECT_NEAR(beside.hips.x, std::sqrt(0.5), 1e-9);
   EXPECT_NEAR(beside.hips.z, -std::sqrt(0.5), 1e-9);
-}
-
-/// A person 2 m away who faces the camera, arms hanging a little apart.
-Places standing() {
-  Places p;
-  p[kHead] = {0, -0.71, 2};
-  for (const double side : {1.0, -1.0}) {
-    const bool left = side > 0;
-    const auto& arm = kArmChains[left ? 0 : 1];
-    const auto& leg = kLegChains[left ? 0 : 1];
-    p[arm[0]] = {side * 0.1725, -0.425, 2};
-    p[arm[1]] = {side * 0.22, -0.178, 2};
-    p[arm[2]] = {side * 0.25, 0.058, 2};
-    p[arm[3]] = {side * 0.255, 0.126, 2};
-    p[leg[0]] = {side * 0.105, 0.035, 2};
-    p[leg[1]] = {side * 0.11, 0.44, 2};
-    p[leg[2]] = {side * 0.115, 0.855, 2};
-    p[leg[3]] = {side * 0.14, 0.9, 1.85};
-  }
-  complete(p);
-  return p;
-}
-
-/// A scene in which every joint is seen on a surface of its own at its depth, and expected where it is.
-struct Standing {
-  Rectified geometry_ = geometry();
-  Image<std::uint16_t> d_q4 = Image<std::uint16_t>({320, 240});
-  Lengths lengths;
-  SurfaceMap map;
-  Scene scene;
-  explicit Standing(const Places& places, Vec3 across = {1, 0, 0}) {
-    scene.depth = {d_q4.view(), &geometry_};
-    scene.lengths = &lengths;
-    scene.map = &map;
-    scene.across = {across, across};
-    scene.trunk = trunk_axes(places);
-    scene.trunk_z_m = 2;
-    for (const JointId id : kFreeJoints) {
-      scene.points[id] = {geometry_.project(places[id]), 1.5, 1, true};
-      scene.expected[id] = {places[id], 0.03, 0};
-      double skin = places[id].z;
-      for (int i = 0; i < 4; ++i) skin = places[id].z - depth_of_joint_m(scene, id, skin);
-      put(id, {{skin, 1}});
-    }
-  }
-  void put(JointId id, std::initializer_list<Surface> surfaces) {
-    Surfaces& at = scene.surfaces[id];
-    at.count = surfaces.size();
-    std::copy(surfaces.begin(), surfaces.end(), at.all.begin());
-  }
-};
-
-TEST(BodyChoose, EveryJointStandsOnItsSurface) {
-  const Places places = standing();
-  Standing s(places);
-  Choices chosen;
-  choose(s.scene, chosen);
-  for (const JointId id : kFreeJoints) {
-    EXPECT_TRUE(chosen[id].on_surface) << name_of(id);
-    EXPECT_LT(distance(chosen[id].p, places[id]), 0.005) << name_of(id);
-  }
-}
-
-TEST(BodyChoose, TheSurfaceThatFitsTheBonesWinsOverTheMedian) {
-  const Places places = standing();
-  Standing s(places);
-  const double skin = s.scene.surfaces[kLeftElbow].all[0].z_m;
-  s.put(kLeftElbow, {{skin - 0.5, 0.55}, {skin, 0.25}, {skin + 0.4, 0.2}});
-  Choices chosen;
-  choose(s.scene, chosen);
-  EXPECT_TRUE(chosen[kLeftElbow].on_surface);
-  EXPECT_LT(distance(chosen[kLeftElbow].p, places[kLeftElbow]), 0.005);
-}
-
-TEST(BodyChoose, InProfileTheFarShoulderIsInferredBehindTheNearOne) {
-  // Turned by 90 degrees: the left side is near, and both shoulders are marked on it.
-  Places places = standing();
-  for (const JointId id : kFreeJoints) {
-    const Vec3 p = places[id];
-    places[id] = {p.z - 2, p.y, 2 - p.x};
-  }
-  Standing s(places, {0, 0, -1});
-  const double near_skin = s.scene.surfaces[kLeftShoulder].all[0].z_m;
-  s.put(kRightShoulder, {{near_skin, 1}});
-  for (const JointId id : {kLeftShoulder, kRightShoulder}) s.scene.expected[id].hidden = 10;
-  Choices chosen;
-  choose(s.scene, chosen);
-  EXPECT_TRUE(chosen[kLeftShoulder].on_surface);
-  EXPECT_FALSE(chosen[kRightShoulder].on_surface);
-  EXPECT_NEAR(chosen[kRightShoulder].p.z - chosen[kLeftShoulder].p.z, s.lengths[Bone::kShoulders], 0.03);
-}
-
-TEST(BodyChoose, NoSurfaceCarriesTwoKnees) {
-  // Legs crossed: both knees are marked at one place, and its surface is the left one's.
-  Places places = standing();
-  places[kLeftKnee] = {0, 0.44, 1.95};
-  places[kRightKnee] = {0, 0.44, 2.1};
-  Standing s(places);
-  s.put(kRightKnee, {s.scene.surfaces[kLeftKnee].all[0]});
-  Choices chosen;
-  choose(s.scene, chosen);
-  EXPECT_TRUE(chosen[kLeftKnee].on_surface);
-  EXPECT_FALSE(chosen[kRightKnee].on_surface);
-}
-
-TEST(BodyChoose, AHandBehindTheBackIsNotOnTheBelly) {
-  Places places = standing();
-  places[kLeftElbow] = {0.26, -0.2, 2.08};
-  places[kLeftWrist] = {0.05, -0.17, 2.2};
-  places[kLeftHand] = {-0.01, -0.15, 2.2};
-  Standing s(places);
-  const Vec3 belly = {0, -0.17, 2 - 0.33 * s.lengths[Bone::kShoulders]};
-  const double above = *s.map.height_m(s.scene.trunk, belly, s.lengths[Bone::kShoulders]);
-  for (const JointId id : {kLeftWrist, kLeftHand}) s.put(id, {{2 - above, 1}});
-  s.scene.hands[0] = HandSight::kAbsent;
-  Choices chosen;
-  choose(s.scene, chosen);
-  EXPECT_FALSE(chosen[kLeftHand].on_surface);
-  EXPECT_FALSE(chosen[kLeftWrist].on_surface);
-  EXPECT_GT(chosen[kLeftHand].p.z, 2.08);
-  // The same surface 12 cm before the belly is the hand.
-  for (const JointId id : {kLeftElbow, kLeftWrist, kLeftHand}) s.scene.expected[id] = {places[id] - Vec3{0, 0, 0.35}, 0.1, 0};
-  s.put(kLeftElbow, {{1.85, 1}});
-  for (const JointId id : {kLeftWrist, kLeftHand}) s.put(id, {{2 - above - 0.12, 1}});
-  s.scene.hands[0] = HandSight::kSeen;
-  choose(s.scene, chosen);
-  EXPECT_TRUE(chosen[kLeftHand].on_surface);
 }
 
 TEST(BodyFit, PointsAndDepthGiveTheBodyBack) {

@@ -52,6 +52,8 @@ class BodyTracker final : public Tracker {
   std::vector<Tracked*> owners_;                                    // of each person seen
   std::vector<std::array<std::optional<std::size_t>, 2>> hand_of_;  // by owner
   std::vector<TurnedSquare> regions_;                               // of those who were missed
+  std::vector<std::size_t> order_;                                  // of persons seen who have an owner, the nearest first
+  std::vector<const body::Places*> nearer_;
   std::vector<Look> looks_;
   std::vector<SeenHand> hands_;
   std::vector<Person> people_;
@@ -84,6 +86,8 @@ void BodyTracker::reset() {
   tracked_.reserve(kMostPeople);
   people_.clear();
   people_.reserve(kMostPeople);
+  order_.reserve(kMostPeople);
+  nearer_.reserve(kMostPeople);
   if (detector_)
     finder_ = std::make_unique<PeopleFinder>(
         *detector_, PeopleFinder::Options{.hands = false, .most = kMostPeople, .search_every = kSearchEvery});
@@ -167,12 +171,18 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
     }
   }
   look_at_hands(view, seen);
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (owners_[i] == nullptr) continue;
+  // The nearest first: what is behind them is theirs to hide.
+  order_.clear();
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (owners_[i] != nullptr) order_.push_back(i);
+  std::ranges::sort(order_, {}, [&](std::size_t i) { return std::pair(owners_[i]->body.expected_trunk().z, owners_[i]->id); });
+  nearer_.clear();
+  for (const std::size_t i : order_) {
     Body::Hands hands;
     for (std::size_t s = 0; s < 2; ++s)
       if (hand_of_[i][s]) hands.seen[s] = &hands_[*hand_of_[i][s]];
-    owners_[i]->body.track(view, seen[i].body, hands);
+    owners_[i]->body.track(view, seen[i].body, hands, nearer_);
+    nearer_.push_back(&owners_[i]->body.places());
   }
   for (Tracked& each : tracked_)
     if (!each.matched) each.body.miss();

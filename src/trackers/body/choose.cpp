@@ -125,6 +125,19 @@ double sight_score(const Scene& scene, JointId id) {
   return sight == HandSight::kAbsent ? kHandAbsent : 0;
 }
 
+/// Whether a place on a surface is on somebody else, who stands before this person, and is not where the joint is expected.
+bool is_of_another(const Scene& scene, JointId id, Vec3 skin) {
+  constexpr double kOwn_m = 0.12;
+  if (scene.nearer.empty() || distance(scene.expected[id].p, skin) < kOwn_m) return false;
+  return std::ranges::any_of(scene.nearer, [&](const Places* other) {
+    return std::ranges::any_of(kBody.joints, [&](const JointDef& joint) {
+      if (joint.parent < 0) return false;
+      const JointId from = kBody.joints[static_cast<std::size_t>(joint.parent)].id;
+      return to_segment(skin, (*other)[from], (*other)[joint.id]) < joint.radius_m;
+    });
+  });
+}
+
 void add_surfaces(const Scene& scene, JointId id, double most_expected, Candidates& out) {
   bool nearer = false;  // something before the trunk was met
   for (const Surface& surface : scene.surfaces[id].get()) {
@@ -134,6 +147,7 @@ void add_surfaces(const Scene& scene, JointId id, double most_expected, Candidat
     c.score = log_share(surface.share) +
               expected_score(scene.expected[id], c.p, most_expected / (1 + 0.5 * scene.expected[id].hidden));
     c.score += sight_score(scene, id) + kUnseen * (1 - share_of(scene.points[id].visibility, 0.35, 0.7));
+    if (is_of_another(scene, id, on_ray(scene, id, surface.z_m))) c.score += kSameSurface;
     if (const double trunk = trunk_share(scene, id, surface.z_m); trunk > 0) {
       if (nearer) continue;
       c.doubtful = trunk > 0.5;
@@ -193,13 +207,29 @@ struct LimbChoice {
   std::array<Candidate, 3> joints;
 };
 
-/// Surfaces that the other limb stands on.
-using Taken = std::span<const Candidate>;
-
 bool same_surface(const Candidate& a, const Candidate& b) {
   constexpr double kSame_m = 0.05;
   return !a.hidden() && !b.hidden() && distance(a.p, b.p) < kSame_m;
 }
+
+/// Surfaces that the other limb stands on: of its joints, and between those that are seen.
+struct Taken {
+  Choice root;
+  std::span<const Candidate> joints = {};
+
+  bool has(const Scene& scene, const Candidate& c) const {
+    const double close_m = 0.04 + 0.3 * scene.depth.m_per_px(c.p.z);
+    Vec3 from = root.p;
+    bool from_seen = root.on_surface;
+    for (const Candidate& to : joints) {
+      if (same_surface(c, to)) return true;
+      if (!c.hidden() && from_seen && !to.hidden() && to_segment(c.p, from, to.p) < close_m) return true;
+      from = to.p;
+      from_seen = !to.hidden();
+    }
+    return false;
+  }
+};
 
 /// Places on a joint's ray that lie a bone's length from its parent.
 void add_sphere(const Scene& scene, JointId id, Vec3 parent, double length, double most, Candidates& out) {
@@ -216,15 +246,14 @@ void add_sphere(const Scene& scene, JointId id, Vec3 parent, double length, doub
   }
 }
 
-LimbChoice choose_limb(const Scene& scene, const Limb& limb, const LimbBones& bones, Vec3 root, Taken taken) {
+LimbChoice choose_limb(const Scene& scene, const Limb& limb, const LimbBones& bones, Vec3 root, const Taken& taken) {
   std::array<Candidates, 3> nodes;
   for (std::size_t n = 0; n < 3; ++n) {
     const JointId id = limb[n + 1];
     const double most = n == 2 ? bones.most_end : bones.most_middle;
     add_surfaces(scene, id, most, nodes[n]);
     for (std::size_t i = 0; i < nodes[n].count; ++i)
-      for (const Candidate& other : taken)
-        if (same_surface(nodes[n].all[i], other)) nodes[n].all[i].score += kSameSurface;
+      if (taken.has(scene, nodes[n].all[i])) nodes[n].all[i].score += kSameSurface;
     add_hidden(scene, id, on_ray(scene, id, scene.expected[id].p.z), most, nodes[n]);
     add_hidden(scene, id, scene.expected[id].p, most, nodes[n]);
     if (n == 0) {
@@ -262,17 +291,18 @@ LimbChoice choose_limb(const Scene& scene, const Limb& limb, const LimbBones& bo
   return out;
 }
 
-bool share_a_surface(const LimbChoice& a, const LimbChoice& b) {
-  return std::any_of(a.joints.begin(), a.joints.end(), [&](const Candidate& one) {
-    return std::any_of(b.joints.begin(), b.joints.end(), [&](const Candidate& other) { return same_surface(one, other); });
-  });
+bool share_a_surface(const Scene& scene, const LimbChoice& a, const Taken& b) {
+  return std::ranges::any_of(a.joints, [&](const Candidate& one) { return b.has(scene, one); });
 }
 
 void choose_limbs(const Scene& scene, const std::array<Limb, 2>& limbs, const LimbBones& bones, Choices& out) {
-  const auto alone = [&](std::size_t s, Taken taken) { return choose_limb(scene, limbs[s], bones, out[limbs[s][0]].p, taken); };
+  const auto alone = [&](std::size_t s, const Taken& taken) {
+    return choose_limb(scene, limbs[s], bones, out[limbs[s][0]].p, taken);
+  };
   std::array<LimbChoice, 2> chosen = {alone(0, {}), alone(1, {})};
-  if (share_a_surface(chosen[0], chosen[1])) {
-    const LimbChoice right = alone(1, chosen[0].joints), left = alone(0, chosen[1].joints);
+  const std::array<Taken, 2> taken = {Taken{out[limbs[0][0]], chosen[0].joints}, Taken{out[limbs[1][0]], chosen[1].joints}};
+  if (share_a_surface(scene, chosen[0], taken[1]) || share_a_surface(scene, chosen[1], taken[0])) {
+    const LimbChoice right = alone(1, taken[0]), left = alone(0, taken[1]);
     if (chosen[0].score + right.score >= left.score + chosen[1].score)
       chosen[1] = right;
     else

@@ -2,6 +2,7 @@
 // stand beside it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -52,6 +53,12 @@ inline Vec2 mean(Vec2 a, Vec2 b) { return {(a.x + b.x) / 2, (a.y + b.y) / 2}; }
 inline Vec3 middle(Vec3 a, Vec3 b) { return 0.5 * (a + b); }
 constexpr double square(double x) { return x * x; }
 inline double distance(Vec3 a, Vec3 b) { return norm(a - b); }
+/// From a point to the nearest one between a and b.
+inline double to_segment(Vec3 p, Vec3 a, Vec3 b) {
+  const Vec3 way = b - a;
+  const double t = std::clamp(dot(p - a, way) / std::max(dot(way, way), 1e-9), 0.0, 1.0);
+  return distance(p, a + t * way);
+}
 
 /// How far a joint may move from where it was expected, from frame to frame: one standard deviation.
 ///

@@ -1,6 +1,8 @@
 // All that a frame and the frames before say of one person, before joints are chosen.
 #pragma once
 
+#include <span>
+
 #include "trackers/body/lengths.h"
 #include "trackers/body/lift.h"
 #include "trackers/body/points.h"
@@ -28,7 +30,8 @@ struct Scene {
   std::array<HandSight, 2> hands = {};  // left, right
   const Lengths* lengths = nullptr;
   const SurfaceMap* map = nullptr;
-  TrunkAxes trunk;  // as expected; chosen anew with the shoulders and hips
+  std::span<const Places* const> nearer;  // people before this one, as fitted in this frame
+  TrunkAxes trunk;                        // as expected; chosen anew with the shoulders and hips
   double trunk_z_m = 0;
 
   double width_m() const { return (*lengths)[Bone::kShoulders]; }

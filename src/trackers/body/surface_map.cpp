@@ -12,12 +12,6 @@ constexpr double kHalfWidths = 0.75, kAbove = 0.1, kBelow = 1.25;
 
 bool seen_from_front(const TrunkAxes& axes) { return dot(axes.front, axes.shoulders) < 0; }
 
-double to_segment(Vec3 p, Vec3 a, Vec3 b) {
-  const Vec3 way = b - a;
-  const double t = std::clamp(dot(p - a, way) / std::max(dot(way, way), 1e-9), 0.0, 1.0);
-  return distance(p, a + t * way);
-}
-
 }  // namespace
 
 TrunkAxes trunk_axes(const Places& joints) {

@@ -1,0 +1,121 @@
+// Which surfaces carry the joints of a made-up person.
+#include <gtest/gtest.h>
+
+#include "trackers/body/standing.h"
+
+namespace duo::body {
+namespace {
+
+using namespace test;  // NOLINT: the made-up person
+
+TEST(BodyChoose, EveryJointStandsOnItsSurface) {
+  const Places places = standing();
+  Standing s(places);
+  Choices chosen;
+  choose(s.scene, chosen);
+  for (const JointId id : kFreeJoints) {
+    EXPECT_TRUE(chosen[id].on_surface) << name_of(id);
+    EXPECT_LT(distance(chosen[id].p, places[id]), 0.005) << name_of(id);
+  }
+}
+
+TEST(BodyChoose, TheSurfaceThatFitsTheBonesWinsOverTheMedian) {
+  const Places places = standing();
+  Standing s(places);
+  const double skin = s.scene.surfaces[kLeftElbow].all[0].z_m;
+  s.put(kLeftElbow, {{skin - 0.5, 0.55}, {skin, 0.25}, {skin + 0.4, 0.2}});
+  Choices chosen;
+  choose(s.scene, chosen);
+  EXPECT_TRUE(chosen[kLeftElbow].on_surface);
+  EXPECT_LT(distance(chosen[kLeftElbow].p, places[kLeftElbow]), 0.005);
+}
+
+TEST(BodyChoose, InProfileTheFarShoulderIsInferredBehindTheNearOne) {
+  // Turned by 90 degrees: the left side is near, and both shoulders are marked on it.
+  Places places = standing();
+  for (const JointId id : kFreeJoints) {
+    const Vec3 p = places[id];
+    places[id] = {p.z - 2, p.y, 2 - p.x};
+  }
+  Standing s(places, {0, 0, -1});
+  const double near_skin = s.scene.surfaces[kLeftShoulder].all[0].z_m;
+  s.put(kRightShoulder, {{near_skin, 1}});
+  for (const JointId id : {kLeftShoulder, kRightShoulder}) s.scene.expected[id].hidden = 10;
+  Choices chosen;
+  choose(s.scene, chosen);
+  EXPECT_TRUE(chosen[kLeftShoulder].on_surface);
+  EXPECT_FALSE(chosen[kRightShoulder].on_surface);
+  EXPECT_NEAR(chosen[kRightShoulder].p.z - chosen[kLeftShoulder].p.z, s.lengths[Bone::kShoulders], 0.03);
+}
+
+TEST(BodyChoose, NoSurfaceCarriesTwoKnees) {
+  // Legs crossed: both knees are marked at one place, and its surface is the left one's.
+  Places places = standing();
+  places[kLeftKnee] = {0, 0.44, 1.95};
+  places[kRightKnee] = {0, 0.44, 2.1};
+  Standing s(places);
+  s.put(kRightKnee, {s.scene.surfaces[kLeftKnee].all[0]});
+  Choices chosen;
+  choose(s.scene, chosen);
+  EXPECT_TRUE(chosen[kLeftKnee].on_surface);
+  EXPECT_FALSE(chosen[kRightKnee].on_surface);
+}
+
+TEST(BodyChoose, AKneeIsNotOnTheOtherThigh) {
+  Places places = standing();
+  places[kLeftKnee] = {-0.108, 0.3, 2.25};  // behind the right thigh
+  Standing s(places);
+  s.scene.expected[kLeftKnee].hidden = 10;
+  s.put(kLeftKnee, {{2 - depth_of_joint_m(s.scene, kLeftKnee, 2), 1}});
+  Choices chosen;
+  choose(s.scene, chosen);
+  EXPECT_TRUE(chosen[kRightKnee].on_surface);
+  EXPECT_FALSE(chosen[kLeftKnee].on_surface);
+  s.put(kRightKnee, {});  // without a right leg the surface is its own
+  choose(s.scene, chosen);
+  EXPECT_TRUE(chosen[kLeftKnee].on_surface);
+}
+
+TEST(BodyChoose, AnElbowIsNotOnSomebodyElse) {
+  const Places places = standing();
+  Places other;  // 10 cm nearer, at the same places of the picture
+  for (const JointId id : kFreeJoints) other[id] = 0.95 * places[id];
+  complete(other);
+  Standing s(places);
+  s.scene.expected[kRightElbow].hidden = 10;
+  s.put(kRightElbow, {{1.9 - depth_of_joint_m(s.scene, kRightElbow, 1.9), 1}});
+  Choices chosen;
+  choose(s.scene, chosen);
+  EXPECT_TRUE(chosen[kRightElbow].on_surface);
+  const std::array<const Places*, 1> nearer = {&other};
+  s.scene.nearer = nearer;
+  choose(s.scene, chosen);
+  EXPECT_FALSE(chosen[kRightElbow].on_surface);
+}
+
+TEST(BodyChoose, AHandBehindTheBackIsNotOnTheBelly) {
+  Places places = standing();
+  places[kLeftElbow] = {0.26, -0.2, 2.08};
+  places[kLeftWrist] = {0.05, -0.17, 2.2};
+  places[kLeftHand] = {-0.01, -0.15, 2.2};
+  Standing s(places);
+  const Vec3 belly = {0, -0.17, 2 - 0.33 * s.lengths[Bone::kShoulders]};
+  const double above = *s.map.height_m(s.scene.trunk, belly, s.lengths[Bone::kShoulders]);
+  for (const JointId id : {kLeftWrist, kLeftHand}) s.put(id, {{2 - above, 1}});
+  s.scene.hands[0] = HandSight::kAbsent;
+  Choices chosen;
+  choose(s.scene, chosen);
+  EXPECT_FALSE(chosen[kLeftHand].on_surface);
+  EXPECT_FALSE(chosen[kLeftWrist].on_surface);
+  EXPECT_GT(chosen[kLeftHand].p.z, 2.08);
+  // The same surface 12 cm before the belly is the hand.
+  for (const JointId id : {kLeftElbow, kLeftWrist, kLeftHand}) s.scene.expected[id] = {places[id] - Vec3{0, 0, 0.35}, 0.1, 0};
+  s.put(kLeftElbow, {{1.85, 1}});
+  for (const JointId id : {kLeftWrist, kLeftHand}) s.put(id, {{2 - above - 0.12, 1}});
+  s.scene.hands[0] = HandSight::kSeen;
+  choose(s.scene, chosen);
+  EXPECT_TRUE(chosen[kLeftHand].on_surface);
+}
+
+}  // namespace
+}  // namespace duo::body
