@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 import duoptic
-from given import CLIP, RIG, tool
+from given import CLIP, FRAMES, RIG, tool
 
 
 class Errors(unittest.TestCase):
@@ -107,7 +107,7 @@ class Errors(unittest.TestCase):
         self.assertIsNone(frame.camera)
 
     def test_the_end_stays_the_end(self):
-        frames = duoptic.open(CLIP, every=39, maps=[])
+        frames = duoptic.open(CLIP, every=FRAMES - 1, maps=[])
         self.assertEqual(len(list(frames)), 2)
         self.assertEqual(list(frames), [])
         frames.close()
@@ -120,7 +120,7 @@ class Errors(unittest.TestCase):
             duoptic.open(CLIP).add_sink("people.jsonl")
         for name in ("people.mp4", "people.mcap"):
             with self.assertRaisesRegex(duoptic.Error, "needs color, views and disparity"):
-                duoptic.open(CLIP, tracker="arm", maps=[]).add_sink(self.folder / name)
+                duoptic.open(CLIP, tracker="thesis", maps=[]).add_sink(self.folder / name)
         self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_an_output_that_was_not_completed_is_not_there(self):

@@ -291,19 +291,24 @@ LimbChoice choose_limb(const Scene& scene, const Limb& limb, const LimbBones& bo
   return out;
 }
 
-bool share_a_surface(const Scene& scene, const LimbChoice& a, const Taken& b) {
-  return std::ranges::any_of(a.joints, [&](const Candidate& one) { return b.has(scene, one); });
-}
-
 void choose_limbs(const Scene& scene, const std::array<Limb, 2>& limbs, const LimbBones& bones, Choices& out) {
   const auto alone = [&](std::size_t s, const Taken& taken) {
     return choose_limb(scene, limbs[s], bones, out[limbs[s][0]].p, taken);
   };
+  const auto taken_by = [&](std::size_t s, const LimbChoice& limb) { return Taken{out[limbs[s][0]], limb.joints}; };
+  const auto share = [&](const LimbChoice& left, const LimbChoice& right) {
+    const auto on = [&](const LimbChoice& limb, const Taken& taken) {
+      return std::ranges::any_of(limb.joints, [&](const Candidate& c) { return taken.has(scene, c); });
+    };
+    return on(left, taken_by(1, right)) || on(right, taken_by(0, left));
+  };
   std::array<LimbChoice, 2> chosen = {alone(0, {}), alone(1, {})};
-  const std::array<Taken, 2> taken = {Taken{out[limbs[0][0]], chosen[0].joints}, Taken{out[limbs[1][0]], chosen[1].joints}};
-  if (share_a_surface(scene, chosen[0], taken[1]) || share_a_surface(scene, chosen[1], taken[0])) {
-    const LimbChoice right = alone(1, taken[0]), left = alone(0, taken[1]);
-    if (chosen[0].score + right.score >= left.score + chosen[1].score)
+  if (share(chosen[0], chosen[1])) {
+    const LimbChoice right = alone(1, taken_by(0, chosen[0])), left = alone(0, taken_by(1, chosen[1]));
+    const auto score = [&](const LimbChoice& l, const LimbChoice& r) {
+      return l.score + r.score + (share(l, r) ? kSameSurface : 0);
+    };
+    if (score(chosen[0], right) >= score(left, chosen[1]))
       chosen[1] = right;
     else
       chosen[0] = left;
