@@ -44,18 +44,16 @@ std::optional<FittedPlane> fit_plane(const std::vector<Vec3>& points_m) {
 
 double root_of_mean(double sum, std::size_t count) { return std::sqrt(sum / static_cast<double>(count)); }
 
-/// Of each frame.
-struct Figures {
-  std::vector<double> fill_percent, distance_m, angle_deg, rms_mm, rms_px;
-};
-
 }  // namespace
 
 struct DepthQualityMeter::State {
   Rectified rectified;
   Window region;
   std::optional<double> true_distance_m;
-  Figures figures;
+  struct Figures {
+    std::vector<double> fill_percent, distance_m, angle_deg, rms_mm, rms_px;
+  };
+  Figures figures;                      // of each frame
   std::vector<std::vector<float>> z_m;  // of each frame, the region row by row; kNoDepth where nothing is known
 };
 
@@ -136,7 +134,7 @@ TemporalNoise temporal_noise(const std::vector<std::vector<float>>& z_m) {
 DepthQuality DepthQualityMeter::quality() const {
   const State& s = *state_;
   DUO_CHECK(!s.z_m.empty());
-  Figures f = s.figures;
+  State::Figures f = s.figures;
   const TemporalNoise noise = temporal_noise(s.z_m);
   DepthQuality out{.frames = static_cast<int>(s.z_m.size()),
                    .fill_rate_percent = median(f.fill_percent),
