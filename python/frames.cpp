@@ -1,10 +1,9 @@
-// Frames of a source, one after the other, and of arrays.
+// Frames of a source, one after the other.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <mutex>
 #include <string_view>
-#include <thread>
 
 #include "binding.h"
 #include "duoptic/row_offsets.h"
@@ -30,7 +29,7 @@ T named(const std::array<std::pair<std::string_view, T>, N>& table, std::string_
   refuse("there is no " + std::string(what) + " '" + std::string(name) + "'; there are " + names);
 }
 
-/// Where the frames come from, without those keywords that say it.
+/// Where the pairs come from.
 struct Input {
   std::unique_ptr<PairSource> pairs;
   std::optional<Rig> rig;
@@ -39,6 +38,7 @@ struct Input {
   std::filesystem::path left, right;
 };
 
+/// `keywords` loses those that say it.
 Input open_input(const py::object& left, const py::object& right, py::dict& keywords) {
   Input input{.pairs = {}, .rig = {}, .names = {}, .wish = {}, .left = path_of(left, "left"), .right = path_of(right, "right")};
   input.rig = rig_of(take<py::object>(keywords, "rig", py::none()));
@@ -64,20 +64,16 @@ std::optional<RowOffsets> rows_of(const Input& input, int threads) {
   return rows.matter() ? std::optional(rows) : std::nullopt;
 }
 
-bool ends_with(const std::string& text, std::string_view end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 std::unique_ptr<Sink> sink_of(const std::string& target, Axes axes, const TrackHeader& header, std::string& note) {
   if (target.starts_with("osc://")) return value(make_osc(target.substr(6), axes));
   if (target.starts_with("vmc://")) return value(make_vmc(target.substr(6)));
-  if (ends_with(target, ".jsonl")) return value(make_json_lines(target, header));
-  if (ends_with(target, ".csv")) return value(make_csv(target, axes));
-  if (ends_with(target, ".bvh")) return value(make_bvh(target, header));
-  if (ends_with(target, ".glb")) return value(make_gltf(target, header));
-  if (ends_with(target, ".trc")) return value(make_trc(target, header));
-  if (ends_with(target, ".mcap")) return value(make_mcap(target, header));
-  if (ends_with(target, ".mp4")) return value(make_panel_video(target, header, note));
+  if (target.ends_with(".jsonl")) return value(make_json_lines(target, header));
+  if (target.ends_with(".csv")) return value(make_csv(target, axes));
+  if (target.ends_with(".bvh")) return value(make_bvh(target, header));
+  if (target.ends_with(".glb")) return value(make_gltf(target, header));
+  if (target.ends_with(".trc")) return value(make_trc(target, header));
+  if (target.ends_with(".mcap")) return value(make_mcap(target, header));
+  if (target.ends_with(".mp4")) return value(make_panel_video(target, header, note));
   refuse("cannot write '" + target +
          "': no kind of output; there are .jsonl, .csv, .bvh, .glb, .trc, .mcap, .mp4, osc://HOST:PORT and vmc://HOST:PORT");
 }

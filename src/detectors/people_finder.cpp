@@ -202,9 +202,14 @@ std::span<const SeenPerson> PeopleFinder::follow(View<const Rgb8> picture, std::
   m.regions.insert(m.regions.end(), also.begin(), also.end());
   m.look_at(picture);
   m.keep();
-  if (m.picture++ % m.options.search_every == 0 || m.kept.empty()) {
+  constexpr int kSearchAgain = 3;  // pictures, for somebody who was there
+  const bool missed = !also.empty() && m.picture % kSearchAgain == 0;
+  const bool next = m.picture % m.options.search_every == 0 || m.kept.empty();
+  ++m.picture;
+  if (missed || next) {
     m.finds.clear();
-    m.search(picture, m.parts[static_cast<std::size_t>(m.searches++) % m.parts.size()]);
+    if (next) m.search(picture, m.parts[static_cast<std::size_t>(m.searches++) % m.parts.size()]);
+    if (missed) m.search(picture, m.parts.front());
     std::erase_if(m.finds, [&](const FoundPerson& found) {
       return std::ranges::any_of(m.kept, [&](const SeenBody& body) { return same_find(body.next, found.region); });
     });

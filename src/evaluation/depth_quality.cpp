@@ -47,6 +47,9 @@ double root_of_mean(double sum, std::size_t count) { return std::sqrt(sum / stat
 }  // namespace
 
 struct DepthQualityMeter::State {
+  struct Figures {  // of each frame
+    std::vector<double> fill_percent, distance_m, angle_deg, rms_mm, rms_px;
+  };
   Rectified rectified;
   Window region;
   std::optional<double> true_distance_m;

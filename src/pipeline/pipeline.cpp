@@ -99,7 +99,10 @@ Result<void> Pipeline::State::prepare() {
 
 Result<void> Pipeline::State::prepare_tracker() {
   if (tracker == nullptr) return {};
-  return tracker->prepare({*setup.frames.rig, header.rectified, header.frame_s, setup.threads, header.live, setup.body_model});
+  // The engine makes the next frame on all threads meanwhile: a layer of a network that is shared by as many would wait for
+  // them.
+  const int threads = std::max(1, setup.threads / 2);
+  return tracker->prepare({*setup.frames.rig, header.rectified, header.frame_s, threads, header.live, setup.body_model});
 }
 
 /// The threads, at the first pair that is asked for.

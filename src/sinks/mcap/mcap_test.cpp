@@ -102,7 +102,7 @@ TEST(Cdr, FieldsLieAtMultiplesOfTheirSize) {
   EXPECT_EQ(cdr.bytes(), std::string("\0\1\0\0"            // little-endian
                                      "\7\0\0\0\4\3\2\1"    // three bytes between
                                      "\3\0\0\0ab\0"        // with its end
-                                     "\0\0\0\0\0\0\0\0\0"  // 15 bytes so far: one between; a double
+                                     "\0\0\0\0\0\0\0"  // 15 bytes so far: one between; a double
                                      "\xF0\x3F",
                                      4 + 8 + 7 + 1 + 8));
 }

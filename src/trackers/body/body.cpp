@@ -321,7 +321,7 @@ void Body::publish(const FrameView& frame, Person& person) const {
   using enum JointId;
   // Equations know nothing of what is wrong in the same way in all frames. Hips are marked higher or lower on one person than
   // on another.
-  constexpr double kScale = 1.4, kHandScale = 1.15, kFloor_m = 0.006, kHipMark_m = 0.028, kLost_m = 0.45;
+  constexpr double kScale = 1.4, kHandScale = 1.15, kFloor_m = 0.006, kHipMark_m = 0.028, kLost_m = 0.45, kHandLost_m = 0.37;
   const Places places = with_lengths(fitted_.places, lengths_);
   const auto fill = [&](JointId id, Vec3 p, const Covariance3& c, JointState state, Vec3 step) {
     Joint& joint = person.joints[index_of(id)];
@@ -330,7 +330,7 @@ void Body::publish(const FrameView& frame, Person& person) const {
     const double k = square(hand ? kHandScale : kScale), floor = square(kFloor_m), mark = is_hip(id) ? square(kHipMark_m) : 0;
     joint.cov_m2 = {k * c.xx + floor, k * c.xy, k * c.xz, k * c.yy + floor + mark, k * c.yz, k * c.zz + floor};
     joint.v_in_rig_m_s = (1 / frame.frame_s) * step;
-    joint.state = joint.sigma_m() > kLost_m ? JointState::kLost : state;
+    joint.state = joint.sigma_m() > (hand ? kHandLost_m : kLost_m) ? JointState::kLost : state;
     joint.confidence = joint.state == JointState::kLost ? 0 : 1 / (1 + square(joint.sigma_m() / 0.1));
   };
   for (const JointId id : kFreeJoints) {

@@ -38,7 +38,7 @@ class BodyTracker final : public Tracker {
   };
   /// Finds the tracked person that each seen one is, the most alike first.
   void match(const body::FrameView& frame, std::span<const SeenPerson> seen);
-  void match(const body::FrameView& frame, std::span<const SeenPerson> seen, double most, int missed);
+  void match(const body::FrameView& frame, std::span<const SeenPerson> seen, double most);
   /// Whether a body that nobody owns lies over one that somebody does: the same person, marked twice.
   bool is_of_another(std::span<const SeenPerson> seen, std::size_t which) const;
   void look_at_hands(const body::FrameView& frame, std::span<const SeenPerson> seen);
@@ -97,20 +97,19 @@ void BodyTracker::reset() {
 
 void BodyTracker::match(const body::FrameView& frame, std::span<const SeenPerson> seen) {
   constexpr double kAlike = 1, kPerhapsAlike = 2.2;
-  constexpr int kGone = 3;  // frames
   for (Tracked& each : tracked_) each.matched = false;
   owners_.assign(seen.size(), nullptr);
-  match(frame, seen, kAlike, 0);
-  match(frame, seen, kPerhapsAlike, kGone);  // who was away for a while may come back elsewhere
+  match(frame, seen, kAlike);
+  match(frame, seen, kPerhapsAlike);  // who comes back elsewhere, before somebody new
 }
 
-void BodyTracker::match(const body::FrameView& frame, std::span<const SeenPerson> seen, double most, int missed) {
+void BodyTracker::match(const body::FrameView& frame, std::span<const SeenPerson> seen, double most) {
   while (true) {
     double least = most;
     Tracked* owner = nullptr;
     std::size_t whose = 0;
     for (Tracked& each : tracked_) {
-      if (each.matched || each.body.missed() < missed) continue;
+      if (each.matched) continue;
       for (std::size_t i = 0; i < seen.size(); ++i) {
         if (owners_[i] != nullptr) continue;
         const double unlike = each.body.unlike(frame, seen[i].body);

@@ -65,19 +65,15 @@ double free_space_score(const Scene& scene, JointId id, Vec3 p) {
   return surfaces.all[0].z_m > p.z + kClose_m ? kFreeSpace : 0;
 }
 
-/// Whether a place lies between the surface of the trunk and a little beyond the plane through shoulders and hips.
-bool is_inside_trunk(const Scene& scene, Vec3 p) {
-  constexpr double kBeyondPlane = 0.24;  // of the shoulders' width
-  const auto height = scene.map->height_m(scene.trunk, p, scene.width_m());
-  if (!height) return false;
-  const double above = scene.trunk.of(p).z, beyond = kBeyondPlane * scene.width_m();
-  const bool front = dot(scene.trunk.front, scene.trunk.shoulders) < 0;
-  return front ? above < *height && above > -beyond : above > *height && above < beyond;
-}
-
 /// A hidden arm is behind the trunk or beside it, not in it.
 double inside_trunk_score(const Scene& scene, JointId id, Vec3 p) {
-  return is_arm(id) && is_inside_trunk(scene, p) ? kInTrunk : 0;
+  constexpr double kBehindPlane_m = 0.24;  // of the shoulders' width
+  if (!is_arm(id)) return 0;
+  const auto height = scene.map->height_m(scene.trunk, p, scene.width_m());
+  if (!height) return 0;
+  const double above = scene.trunk.of(p).z, behind = kBehindPlane_m * scene.width_m();
+  const bool front = dot(scene.trunk.front, scene.trunk.shoulders) < 0;
+  return front ? (above < *height && above > -behind ? kInTrunk : 0) : (above > *height && above < behind ? kInTrunk : 0);
 }
 
 double hidden_score(const Scene& scene, JointId id) {
@@ -93,7 +89,6 @@ double hidden_score(const Scene& scene, JointId id) {
 /// How likely a surface over the trunk is the trunk's own, 0 .. 1.
 double trunk_share(const Scene& scene, JointId id, double skin_z) {
   constexpr double kProud_m = 0.025, kBelow_m = 0.04, kBeforePlane_m = 0.08, kNoise_px = 0.25;
-  constexpr double kFlank = 0.6;  // widths of the shoulders
   if (!is_arm(id)) return 0;
   const HandSight hand = scene.hands[is_left(id) ? 0 : 1];
   const bool elbow = id == JointId::kLeftElbow || id == JointId::kRightElbow;
@@ -105,10 +100,7 @@ double trunk_share(const Scene& scene, JointId id, double skin_z) {
   const double above = scene.trunk.of(skin).z, proud = front ? above - *height : *height - above;
   const double noise = kNoise_px * scene.depth.m_per_px(skin_z);
   if (hand == HandSight::kAbsent && !elbow && proud > -kBelow_m && (front ? above : -above) < kBeforePlane_m) return 1;
-  if (proud > kProud_m + noise) return 0;
-  // Below the chest's surface only the trunk's own flank can be seen.
-  const bool flank = std::abs(scene.trunk.of(skin).x) < kFlank * scene.width_m() && is_inside_trunk(scene, skin);
-  if (proud < -kBelow_m - noise && !flank) return 0;
+  if (proud > kProud_m + noise || proud < -kBelow_m - noise) return 0;
   // Of an elbow beside the trunk the network knows whether it is seen; of a hand behind the back it does not.
   return elbow ? 1 - share_of(scene.points[id].visibility, 0.6, 0.85) : 1;
 }
