@@ -53,10 +53,7 @@ struct DepthQualityMeter::State {
   Rectified rectified;
   Window region;
   std::optional<double> true_distance_m;
-  struct Figures {
-    std::vector<double> fill_percent, distance_m, angle_deg, rms_mm, rms_px;
-  };
-  Figures figures;                      // of each frame
+  Figures figures;
   std::vector<std::vector<float>> z_m;  // of each frame, the region row by row; kNoDepth where nothing is known
 };
 
