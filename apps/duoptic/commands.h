@@ -23,6 +23,7 @@
   EACH(record)              \
   EACH(cameras)             \
   EACH(detect)              \
+  EACH(batch)               \
   DUO_VIEWER_COMMANDS(EACH) \
   EACH(version)             \
   EACH(devices)
