@@ -1,6 +1,6 @@
 # The few commands that everybody needs. Each first installs what is missing (tools/setup; does nothing when all is there).
 # build/release has the tool, and once `make test` was called the tests; build/sanitize the tests with ASan and UBSan.
-.PHONY: build demo test bench deb deb-test soak chaos fuzz format setup-build setup-test
+.PHONY: build demo test bench deb deb-test soak chaos batch-chaos cluster-test fuzz format setup-build setup-test
 
 build: setup-build
 	@test -f build/release/build.ninja || cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=OFF >/dev/null
@@ -42,6 +42,17 @@ chaos: setup-test
 	@cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=ON >/dev/null
 	@cmake --build build/release --target tool_test
 	@DUOPTIC_CHAOS_ROUNDS=1000 build/release/tests/cli/tool_test --gtest_filter=Chaos.*
+
+# Fifty rounds in which workers and runs of `duoptic batch` are killed by chance, about five minutes.
+batch-chaos: setup-test
+	@cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=ON >/dev/null
+	@cmake --build build/release --target tool_test
+	@DUOPTIC_BATCH_ROUNDS=50 build/release/tests/cli/tool_test --gtest_filter='BatchTool.Killed*'
+
+# `duoptic batch run --slurm` on a cluster of this machine alone, whose node, controller and workers are killed.
+cluster-test: build
+	@tools/setup cluster
+	@tests/cluster/cluster_test.sh build/release/duoptic
 
 # Random bytes for every reader, a minute each.
 fuzz: setup-test

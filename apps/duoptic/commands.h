@@ -20,6 +20,7 @@
   EACH(board, "Rigs")                     \
   EACH(calibrate, "Rigs")                 \
   EACH(rig, "Rigs")                       \
+  EACH(batch, "Many recordings")          \
   EACH(quality, "Measuring")              \
   EACH(demo, "Measuring")                 \
   EACH(synth, "Measuring")                \

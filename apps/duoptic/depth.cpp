@@ -34,6 +34,7 @@ constexpr char kFooter[] =
     "  duoptic depth left.avi right.avi --rig rig.json --near 0.5 -o out   everything farther than half a metre\n"
     "  duoptic depth left.png right.png --rig rig.json --outputs cloud --far 5 --axes blender -o out\n"
     "  duoptic depth left.avi right.avi --rig rig.json --outputs depth-video -o out   depth of all frames in one file\n"
+    "  duoptic depth left.avi right.avi --rig rig.json --frames 3000:6000 -o out      a part of a long video\n"
     "  duoptic depth both.png --preset thesis                              both views side by side in one file\n"
     "  duoptic depth left.png right.png --window 200,120,160,160 -o out    only there, the same values, sooner";
 
@@ -46,11 +47,31 @@ struct Options {
   std::vector<std::string> outputs;  // empty: all that there are, without confidence and depth-video
   std::string axes = "opencv";
   std::int64_t every = 1;
+  std::string range;  // of frames; empty: all
   std::vector<Window> windows;
   RigCheck check = RigCheck::kTell;
   bool confidence = false, keep_rows = false, json = false, quiet = false;
   EngineOptions engine;
 };
+
+struct Range {
+  static constexpr std::int64_t kMost = std::int64_t{1} << 40;
+  std::int64_t begin = 0, end = kMost;
+};
+
+/// "A:B" as frames A .. B-1; A alone or B alone may be missing.
+Range parse_range(const std::string& text) {
+  Range range;
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  const auto number = [&](std::size_t from, std::size_t to, std::int64_t& into) {
+    const auto [rest, error] = std::from_chars(text.data() + from, text.data() + to, into);
+    return from == to || (error == std::errc() && rest == text.data() + to);
+  };
+  const bool numbers = colon < text.size() && number(0, colon, range.begin) && number(colon + 1, text.size(), range.end);
+  if (!numbers || range.begin < 0 || range.end <= range.begin || range.end > Range::kMost)
+    throw CLI::ValidationError("--frames", fmt::format("'{}' is not A:B with 0 <= A < B, like 0:3000, 3000: or :3000", text));
+  return range;
+}
 
 /// Each window has to have a part in the picture, or who asked is mistaken.
 Result<void> look_at(Pipeline& pipeline, const Options& options) {
@@ -143,6 +164,11 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
   files.cloud.metric = pipeline.header().metric;
   DUO_TRY(check_outputs(files, options, pipeline));
   const bool in_one = files.has(FrameOutput::kDepthVideo), each = files.outputs.size() > (in_one ? 1 : 0);
+  const Range range = parse_range(options.range.empty() ? ":" : options.range);
+  if (!options.range.empty() && (pipeline.live() || pipeline.still()))
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("cannot use --frames with {}: it is for the frames of videos", options.left)};
+  bool beyond = false;  // the range
   DepthOfAll depth_of_all;
   Progress progress(app, pipeline.count(), options.quiet);
   if (pipeline.live()) Interrupt::is_the_end();
@@ -151,6 +177,8 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
     say_rig_news(app, pipeline);
     if (summary.end == Next::kNothing) continue;
     if (summary.end != Next::kNew) break;
+    beyond = static_cast<std::int64_t>(pipeline.pair()->sequence) >= range.end;
+    if (beyond) break;
     if (const std::string event = pipeline.event(); !event.empty()) say(app, "warning: " + event);
     summary.ms.push_back(pipeline.times().engine_ms);
     summary.coverage_sum += coverage(*pipeline.frame());
@@ -168,6 +196,9 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
     if (in_one) DUO_TRY(depth_of_all.write(pipeline, files, options.folder));
     progress.frame(static_cast<std::int64_t>(number) + 1);
   }
+  if (summary.ms.empty() && !options.range.empty() && !beyond && summary.end == Next::kEnd)
+    return Error{ErrorCode::kBadInput, fmt::format("cannot give frames {}: {} gives {} pair{}, numbered from 0", options.range,
+                                                   options.left, pipeline.read(), pipeline.read() == 1 ? "" : "s")};
   DUO_TRY(depth_of_all.finish(pipeline, files, summary.files));
   return summary;
 }
@@ -237,8 +268,12 @@ Result<std::optional<RowOffsets>> rows_of(const Options& options, const Setup& s
 }
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
-  PipelineSetup setup{
-      .engine = options.engine.engine, .threads = options.engine.threads, .every = options.every, .check = options.check};
+  const std::int64_t begin = options.range.empty() ? 0 : parse_range(options.range).begin;
+  PipelineSetup setup{.engine = options.engine.engine,
+                      .threads = options.engine.threads,
+                      .first = (begin + options.every - 1) / options.every * options.every,  // frames of a run of all
+                      .every = options.every,
+                      .check = options.check};
   Setup& frames = setup.frames = options.engine.setup();
   if (!options.rig.empty()) {
     DUO_TRY_ASSIGN(frames.rig, load_rig(options.rig));
@@ -301,6 +336,15 @@ Command add(CLI::App& app) {
       ->type_name("N")
       ->check(within(std::int64_t{1}, std::int64_t{1} << 40))
       ->capture_default_str();
+  sub->add_option("--frames", options->range,
+                  "Of a video, only frames A .. B-1, the same bits as in a run of all; either may be left out")
+      ->type_name("A:B")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            parse_range(text);
+            return std::string();
+          },
+          ""));
   add_window_option(
       *sub, "--window",
       "Only these pixels of the rectified left picture matter, with the values they would have without it; may be "

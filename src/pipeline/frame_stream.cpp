@@ -11,9 +11,9 @@ namespace duo {
 namespace {
 
 constexpr char kMakeFrame[] = "make the next frame";
-// Pairs outside the engine: being read or read ahead, being aligned, in the queue of frames, on its way out of the queue, and
-// the caller's.
-constexpr std::size_t kPairsOutside = 5;
+// Pairs outside the engine: being read or read ahead, being aligned, the one before that, in the queue of frames, on its way
+// out of the queue, and the caller's.
+constexpr std::size_t kPairsOutside = 6;
 
 std::size_t pairs_in_engine(const PairSource& source, int at_once) {
   return static_cast<std::size_t>(source.live() ? 1 : std::max(1, at_once));
@@ -21,12 +21,17 @@ std::size_t pairs_in_engine(const PairSource& source, int at_once) {
 
 }  // namespace
 
-FrameStream::FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int at_once, Choice choice)
+FrameStream::FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int at_once, Choice choice, Passed passed)
     : source_(std::move(source)),
       engine_(engine),
       choice_(choice),
       pool_(pairs_in_engine(*source_, at_once) + kPairsOutside, [] { return Pair(); }),
-      ring_(pairs_in_engine(*source_, at_once)) {}
+      read_(passed.pairs),
+      start_ns_(passed.start_ns),
+      before_(std::move(passed.last)),
+      ring_(pairs_in_engine(*source_, at_once)) {
+  if (before_ != nullptr) align_.remember(*before_);
+}
 
 FrameStream::~FrameStream() {
   matcher_.ask_to_stop();
@@ -93,7 +98,10 @@ Result<Next> FrameStream::choose_pair(std::shared_ptr<Pair>& into) {
     if (read_ == 0) start_ns_ = into->left.t_ns;
     const std::int64_t from_first = read_++ - choice_.first;
     if (from_first >= 0 && from_first % choice_.every == 0) return Next::kNew;
-    if (from_first + 1 >= 0 && (from_first + 1) % choice_.every == 0) align_.remember(*into);
+    if (from_first + 1 >= 0 && (from_first + 1) % choice_.every == 0) {
+      align_.remember(*into);
+      if (!source_->live()) before_ = into;
+    }
     if (source_->live()) return Next::kNothing;  // it may be long: who waits may want to stop
   }
 }
@@ -138,6 +146,8 @@ Result<Next> FrameStream::make_next(Matched& item) {
 void FrameStream::align(Matched& item) {
   item.aligned = false;
   if (engine_ == nullptr) return;
+  if (before_ != nullptr && align_.begins_with(*item.pair)) align_.begin(*before_);
+  before_ = source_->live() || choice_.every > 1 ? nullptr : item.pair;
   Image<Rgb8>* moved = align_.right_of(*item.pair);
   if (moved == nullptr) return;
   item.aligned = true;

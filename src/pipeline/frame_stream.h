@@ -38,9 +38,15 @@ class FrameStream {
   struct Choice {
     std::int64_t first = 0, every = 1;
   };
+  /// What the source gave already.
+  struct Passed {
+    std::int64_t pairs = 0;
+    TimeNs start_ns = 0;              // of the first
+    std::shared_ptr<Pair> last = {};  // the one before the next, where there is one
+  };
   /// The engine, which must be prepared and outlive this, gets `at_once` pairs at once, of a live source one. Null: the pairs
   /// come without frames.
-  FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int at_once, Choice choice);
+  FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int at_once, Choice choice, Passed passed);
   ~FrameStream();
   FrameStream(const FrameStream&) = delete;
   FrameStream& operator=(const FrameStream&) = delete;
@@ -88,6 +94,7 @@ class FrameStream {
   std::atomic<std::int64_t> read_ = 0;
   std::atomic<TimeNs> start_ns_ = 0;
   std::int64_t pairs_read_ = 0;               // of whichever thread reads
+  std::shared_ptr<Pair> before_;              // of files, the pair before the one that is aligned
   std::optional<Result<Next>> end_of_pairs_;  // of the matching thread alone
   std::atomic<Next> end_ = Next::kEnd;        // what the source's was
 

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "core/check.h"
 #include "core/clock.h"
 #include "pipeline/frame_stream.h"
 #include "pipeline/rig_watch.h"
 #include "pipeline/tap.h"
+#include "sources/file_source.h"
 
 namespace duo {
 
@@ -34,8 +36,8 @@ struct Pipeline::State {
   std::vector<Person> people;
   double tracker_ms = 0;
   RigWatch watch;
-  bool rig_news = false;
-  std::int64_t passed = 0;  // frames of sources before this one
+  bool rig_news = false, rig_news_before = false;  // of pairs that were passed over
+  std::int64_t passed = 0;                         // frames of sources before this one
   double passed_s = 0;
 
   const PairSource& source() const { return frames ? frames->source() : *waiting; }
@@ -43,6 +45,7 @@ struct Pipeline::State {
   Result<void> prepare();
   Result<void> prepare_tracker();
   Result<void> start();
+  Result<FrameStream::Passed> pass_over();
   Result<void> look_at_rig(Next next);
   void keep(std::span<const Person> found);
 };
@@ -105,15 +108,38 @@ Result<void> Pipeline::State::prepare_tracker() {
   return tracker->prepare({*setup.frames.rig, header.rectified, header.frame_s, threads, header.live, setup.body_model});
 }
 
+/// Of files: what lies before the first wanted pair. The rig is judged by the first second and frames are aligned by the pair
+/// before, as in a run of all frames; what lies between is not read where the files have indices.
+Result<FrameStream::Passed> Pipeline::State::pass_over() {
+  FrameStream::Passed passed;
+  auto* const files = waiting->live() || recording->status().on ? nullptr : dynamic_cast<FilePairs*>(waiting.get());
+  while (files != nullptr && passed.pairs < setup.first) {
+    if (passed.pairs > 0 && watch.settled() && passed.pairs < setup.first - 1) {
+      DUO_TRY_ASSIGN(const std::uint64_t reached, files->pass_to(static_cast<std::uint64_t>(setup.first - 1)));
+      passed.pairs = static_cast<std::int64_t>(reached);
+    }
+    auto pair = std::make_shared<Pair>();
+    DUO_TRY_ASSIGN(const Next next, files->next(*pair));
+    if (next != Next::kNew) break;
+    if (passed.pairs == 0) passed.start_ns = pair->left.t_ns;
+    const bool looked_at = (setup.first - passed.pairs) % setup.every == 0;
+    if (looked_at && watch.see(pair, false)) rig_news_before = true;
+    passed.last = std::move(pair);
+    ++passed.pairs;
+  }
+  return passed;
+}
+
 /// The threads, at the first pair that is asked for.
 Result<void> Pipeline::State::start() {
   if (frames) return {};
   DUO_CHECK(waiting != nullptr);
   const int at_once = setup.frames.many_at_once && engine ? engine->in_flight() : 1;
+  DUO_TRY_ASSIGN(FrameStream::Passed passed, pass_over());
   auto tapped = std::make_unique<Tap>(std::move(waiting), recording);
   tap = tapped.get();
   frames = std::make_unique<FrameStream>(std::move(tapped), engine.get(), at_once,
-                                         FrameStream::Choice{setup.first, std::max<std::int64_t>(1, setup.every)});
+                                         FrameStream::Choice{setup.first, setup.every}, std::move(passed));
   frames->start();
   return {};
 }
@@ -122,7 +148,7 @@ Result<void> Pipeline::State::look_at_rig(Next next) {
   rig_news = false;
   if (next == Next::kNothing) return {};
   rig_news = next == Next::kNew ? watch.see(pair, source().still()) : watch.end();
-  rig_news = rig_news && !watch.fit()->what.empty();
+  rig_news = (rig_news | std::exchange(rig_news_before, false)) && !watch.fit()->what.empty();
   if (setup.check == RigCheck::kStrict && rig_news) return Error{ErrorCode::kBadInput, watch.fit()->what};
   return {};
 }
@@ -141,6 +167,7 @@ Pipeline::~Pipeline() = default;
 Result<Pipeline> Pipeline::open(std::unique_ptr<PairSource> pairs, PipelineSetup setup, std::unique_ptr<Tracker> tracker) {
   auto state = std::make_unique<State>();
   state->setup = std::move(setup);
+  state->setup.every = std::max<std::int64_t>(1, state->setup.every);
   state->waiting = std::move(pairs);
   state->tracker = std::move(tracker);
   DUO_TRY(state->prepare());

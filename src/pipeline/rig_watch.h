@@ -27,6 +27,8 @@ class RigWatch {
   /// No pair will come. Whether fit() is new by it.
   bool end();
 
+  /// Of files: whether further pairs change nothing.
+  bool settled() const { return !on_ || fit_.has_value(); }
   /// Empty until pairs were judged.
   const std::optional<RigFit>& fit() const { return fit_; }
 

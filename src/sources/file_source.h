@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "duoptic/source.h"
 #include "sources/gray_scale.h"
@@ -31,6 +32,37 @@ class FileSource : public Source {
   virtual void shift_times(TimeNs) {}
   /// Number in the file of the last picture given, from 0; damaged ones count.
   virtual std::int64_t number() const { return 0; }
+  /// The time of each picture, by number, as next() gives it and the file's index tells it; empty where pictures need others
+  /// to be decoded, where the index does not name each, and where times are not in it.
+  virtual std::vector<TimeNs> indexed_times() { return {}; }
+  /// Whether seek() finds every picture of a recording of ours. Then seek() has to follow.
+  virtual bool prepare_seek() { return false; }
+  /// The next picture is number `number`, or the first whole one after it. After indexed_times() or prepare_seek() said so.
+  ///
+  /// Errors  the index is wrong; those of next()
+  virtual Result<void> seek(std::int64_t) { return Error{ErrorCode::kUnsupported, "cannot seek in a file without an index"}; }
+};
+
+/// Pairs of files. After the end next() gives the end again.
+class FilePairs : public PairSource {
+ public:
+  /// The next pair is number `number`, which lies ahead, or the end comes before it. Where the files have indices the pairs
+  /// between are not read, so that a damaged picture among them counts, which in a run of all pairs does not.
+  ///
+  /// Returns  the number of the next pair
+  /// Errors   those of next(); an index that is wrong
+  virtual Result<std::uint64_t> pass_to(std::uint64_t number) = 0;
+
+ protected:
+  /// Without an index.
+  Result<std::uint64_t> read_to(std::uint64_t number, std::uint64_t given) {
+    Pair passed;
+    for (; given < number; ++given) {
+      DUO_TRY_ASSIGN(const Next next, this->next(passed));
+      if (next != Next::kNew) break;
+    }
+    return given;
+  }
 };
 
 /// View `view` of a file that has several, from 0.

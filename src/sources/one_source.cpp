@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "sources/file_source.h"
 #include "sources/two_views.h"
 
 namespace duo {
@@ -16,7 +17,7 @@ Size half(Size both, ViewLayout layout) {
   return is_above(layout) ? Size{both.width, both.height / 2} : Size{both.width / 2, both.height};
 }
 
-class Halves final : public PairSource {
+class Halves final : public FilePairs {
  public:
   Halves(std::unique_ptr<Source> both, std::string name, ViewLayout layout, bool sure)
       : both_(std::move(both)), name_(std::move(name)), layout_(layout), sure_(sure) {}
@@ -31,8 +32,17 @@ class Halves final : public PairSource {
     return of_source + (of_source.empty() || cut_.empty() ? "" : "; ") + cut_;
   }
 
+  Result<std::uint64_t> pass_to(std::uint64_t number) override {
+    auto* const file = dynamic_cast<FileSource*>(both_.get());
+    if (file == nullptr || file->still() || ended_ || file->indexed_times().size() <= number) return read_to(number, given_);
+    DUO_TRY(file->seek(static_cast<std::int64_t>(number)));
+    given_ = number;
+    return number;
+  }
   Result<Next> next(Pair& into) override {
+    if (ended_) return *ended_;
     DUO_TRY_ASSIGN(const Next next, both_->next(picture_));
+    if (next == Next::kCut || next == Next::kEnd) ended_ = next;
     if (next == Next::kCut) cut_ = fmt::format("{} is cut short or damaged after {} whole pictures", name_, given_);
     if (next != Next::kNew) return next;
     const bool right_first = layout_ == ViewLayout::kRightLeft || layout_ == ViewLayout::kBottomTop;
@@ -70,6 +80,7 @@ class Halves final : public PairSource {
   const ViewLayout layout_;
   bool sure_;
   Picture picture_;
+  std::optional<Next> ended_;
   std::string cut_;
   std::uint64_t given_ = 0;
 };

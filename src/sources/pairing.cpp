@@ -47,6 +47,13 @@ void Pairing::put(CameraSide side, Picture& picture) {
   }
 }
 
+bool Pairing::complete(CameraSide side, std::size_t i, Picture& picture) {
+  Picture& waiting = cameras_[index(side)].waiting[i];
+  if (waiting.t_ns != picture.t_ns) return false;
+  std::swap(waiting, picture);
+  return true;
+}
+
 Pairing::Step Pairing::leave_out(Camera& camera) {
   release(std::move(camera.waiting.front()));
   camera.waiting.pop_front();

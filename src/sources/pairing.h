@@ -33,6 +33,9 @@ class Pairing {
 
   /// Takes the picture's content and gives memory to fill again in exchange. Times of one camera rise.
   void put(CameraSide side, Picture& picture);
+  /// The pixels of the picture number `i` of those that wait, which was put by its time alone; gives memory in exchange. False
+  /// where the times differ.
+  bool complete(CameraSide side, std::size_t i, Picture& picture);
   /// One decision on the pictures that wait. Only a pair changes `into`.
   Step step(Pair& into);
 

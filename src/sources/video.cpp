@@ -52,6 +52,9 @@ class VideoFile final : public FileSource {
   bool any_origin() const override { return std::strstr(container_->iformat->name, "mpeg") != nullptr; }
   void shift_times(TimeNs by_ns) override { shift_ns_ += by_ns; }
   std::int64_t number() const override { return number_; }
+  std::vector<TimeNs> indexed_times() override;
+  bool prepare_seek() override;
+  Result<void> seek(std::int64_t number) override;
 
  private:
   enum class Decoded { kFrame, kEnd, kCut };
@@ -240,6 +243,49 @@ bool VideoFile::follows() {
                     (mending_ || end_of_file() == Decoded::kCut);
   if (!hole) shown_ns_ = t;
   return !hole;
+}
+
+std::vector<TimeNs> VideoFile::indexed_times() {
+  const bool names_each = std::strcmp(container_->iformat->name, "avi") == 0 || has_index();
+  // How bright a gray of 16 bits comes depends on the pictures before.
+  if (!alone_ || is_gray16(decoder_->pix_fmt) || !names_each || lacks_bytes_ != false) return {};
+  AVStream* const s = container_->streams[stream_];
+  std::vector<TimeNs> times;
+  for (int i = 0; i < avformat_index_get_entries_count(s); ++i) {
+    const AVIndexEntry& entry = *avformat_index_get_entry(s, i);
+    const TimeNs t = av::to_ns(entry.timestamp, s->time_base) + shift_ns_;
+    const bool rises = times.empty() || t > times.back();
+    if ((entry.flags & AVINDEX_DISCARD_FRAME) != 0 || entry.size <= 0 || !rises) return {};
+    times.push_back(t);
+  }
+  return times;
+}
+
+bool VideoFile::prepare_seek() {
+  if (recorded_frame_ns_ <= 0 || container_->duration <= 0 || is_gray16(decoder_->pix_fmt)) return false;
+  return av_seek_frame(container_.get(), stream_, 0, AVSEEK_FLAG_BACKWARD) >= 0;  // reads Matroska's index
+}
+
+Result<void> VideoFile::seek(std::int64_t number) {
+  AVStream* const s = container_->streams[stream_];
+  const AVIndexEntry* const entry = avformat_index_get_entry(s, static_cast<int>(number));
+  const auto wrong = [&] {
+    return Error{ErrorCode::kBadInput, fmt::format("cannot find picture {} of video {}: the file's index is wrong; write the "
+                                                   "file anew, or take all of its frames",
+                                                   number, name_)};
+  };
+  const AVIndexEntry* const before = avformat_index_get_entry(s, static_cast<int>(number - 1));
+  if (entry == nullptr || (before != nullptr && before->timestamp >= entry->timestamp) ||
+      av_seek_frame(container_.get(), stream_, entry->timestamp, AVSEEK_FLAG_ANY) < 0)
+    return wrong();
+  avcodec_flush_buffers(decoder_.get());
+  packets_ = number;
+  given_ = static_cast<std::uint64_t>(number);
+  drained_ = mending_ = to_key_ = pending_ = false;
+  if (decode() != Decoded::kFrame) return failure_ != 0 ? av::input_error("video " + name_, failure_, "") : wrong();
+  pending_ = true;
+  const AVIndexEntry* const found = avformat_index_get_entry(s, static_cast<int>(packets_ - 1));
+  return found != nullptr && found->timestamp == frame_->best_effort_timestamp ? Result<void>() : wrong();
 }
 
 /// The picture that does not decode, and with it those that are coded by it.

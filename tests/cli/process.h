@@ -58,6 +58,7 @@ class ToolProcess {
   }
 
   void send(int signal) const { kill(process_, signal); }
+  pid_t id() const { return process_; }
 
   /// Waits for its end: its exit code, 128 + the signal that ended it, or kHangs, and then it is killed: for five seconds it
   /// has neither computed nor ended, or for a minute not ended.
@@ -71,6 +72,8 @@ class ToolProcess {
       rusage used{};
       if (wait4(process_, &status, WNOHANG, &used) == process_) {
         most_memory_mb_ = used.ru_maxrss / 1024;
+        cpu_s_ = static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+                 static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec) * 1e-6;
         process_ = -1;
         return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
       }
@@ -87,6 +90,7 @@ class ToolProcess {
   }
   /// Of one that has ended.
   long most_memory_mb() const { return most_memory_mb_; }
+  double cpu_s() const { return cpu_s_; }
 
  private:
   /// User and system time in hundredths of a second: fields 14 and 15, counted after the name in parentheses.
@@ -104,6 +108,7 @@ class ToolProcess {
 
   pid_t process_ = -1;
   long most_memory_mb_ = 0;
+  double cpu_s_ = 0;
 };
 
 }  // namespace duo::test

@@ -33,6 +33,9 @@ class AlignTime {
   Image<Rgb8>* right_of(const Pair& pair);
   /// Takes a pair only as what comes before the next one.
   void remember(const Pair& pair);
+  /// True for the first pair with a skew. The pair before it was not kept: right_of() wants begin() with that one before.
+  bool begins_with(const Pair& pair) const;
+  void begin(const Pair& before);
 
  private:
   struct State;

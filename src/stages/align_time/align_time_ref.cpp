@@ -84,11 +84,26 @@ struct AlignTime::State {
 AlignTime::AlignTime() : state_(std::make_unique<State>()) {}
 AlignTime::~AlignTime() = default;
 
+namespace {
+
+bool is_skewed(const Pair& pair) {
+  constexpr TimeNs kShortest_ns = 200'000;  // in less an arm moves by a fraction of a millimetre
+  const TimeNs skew_ns = std::abs(pair.right.t_ns - pair.left.t_ns);
+  return skew_ns >= kShortest_ns && skew_ns <= kLongestGap_ns;
+}
+
+}  // namespace
+
+bool AlignTime::begins_with(const Pair& pair) const { return !state_->ever_skewed && is_skewed(pair); }
+
+void AlignTime::begin(const Pair& before) {
+  state_->ever_skewed = true;
+  remember(before);
+}
+
 /// Takes the right picture in; false when its skew is none to be put right, and then the pair is kept for the next.
 bool AlignTime::see(const Pair& pair) {
-  constexpr TimeNs kShortest_ns = 200'000;  // of a skew: in less an arm moves by a fraction of a millimetre
-  const TimeNs skew_ns = pair.right.t_ns - pair.left.t_ns;
-  const bool skewed = std::abs(skew_ns) >= kShortest_ns && std::abs(skew_ns) <= kLongestGap_ns;
+  const bool skewed = is_skewed(pair);
   state_->ever_skewed |= skewed;
   if (!state_->ever_skewed) return false;
   // Cameras of unlike rates are together in one pair and apart in the next, which needs the one before it.
