@@ -11,7 +11,7 @@
 
 #include "duoptic/result.h"
 
-namespace duo {
+namespace [[gnu::visibility("default")]] duo {
 
 /// One piece of work: a recording, or a range of its frames.
 struct ArchiveTask {
