@@ -130,7 +130,7 @@ TEST_F(CommandLine, TellsWhatWasPerhapsMeant) {
     EXPECT_NE(ended.err.find(std::string("did you mean ") + meant + "?"), std::string::npos) << words << ": " << ended.err;
   }
   EXPECT_EQ(run("xyzzy").err.find("did you mean"), std::string::npos);
-  EXPECT_NE(run("depth a b --vmc 127.0.0.1:1").err.find("duoptic track has"), std::string::npos);
+  EXPECT_NE(run("depth a b --vmc 127.0.0.1:1").err.find("duoptic view has"), std::string::npos);
   // What only looks like an option is none: it is another option's value, or a number.
   EXPECT_NE(run("depth left.png right.png --skew-ms -5 -o out").err.find("skew"), std::string::npos);
   EXPECT_NE(run("depth left.png right.png --rig --near -o out").err.find("--near"), std::string::npos);
