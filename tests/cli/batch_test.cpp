@@ -32,8 +32,6 @@ using namespace std::chrono_literals;
 constexpr Size kBatchPicture = {160, 120};
 constexpr int kBatchRecordings = 6;
 constexpr char kBatchDepth[] = " --depth --shard-frames 8 -- --max-disparity 16 --outputs depth-video,disparity";
-constexpr char kBatchTrack[] = " --track -- --matcher pyramid --select hand=80,50 --select elbow=80,38 --select shoulder=80,27";
-
 /// An archive of small recordings, no two alike, and what one run without trouble makes of it.
 class BatchTool : public ::testing::Test {
  protected:
@@ -137,21 +135,34 @@ TEST_F(BatchTool, ARunAgainStartsNothing) {
 }
 
 TEST_F(BatchTool, TracksAndTheirTable) {
-  plan("tracks", kBatchTrack);
+  const SyntheticSetup setup{.size = {320, 240}};
+  const SyntheticPair raw = render_synthetic(setup, 2);
+  for (const std::string id : {"p0", "p1"}) {
+    fs::create_directories(at("arms/" + id));
+    for (const bool right : {false, true}) {
+      auto video = AviWriter::open(at("arms/" + id + (right ? "/right.avi" : "/left.avi")), setup.size, 30, 90);
+      ASSERT_TRUE(video);
+      for (int t = 0; t < 6; ++t) ASSERT_TRUE(video->write((right ? raw.pair.right : raw.pair.left).pixels));
+      ASSERT_TRUE(video->finish());
+    }
+  }
+  ASSERT_TRUE(save_rig(raw.rig, at("arms/rig.json")));
+  ASSERT_EQ(
+      run("batch plan arms -o tracks --track -- --select hand=160,100 --select elbow=160,77 --select shoulder=160,54").exit, 0);
   const Ended ended = run("batch run tracks --local --jobs 2 --json");
   ASSERT_EQ(ended.exit, 0) << ended.out << ended.err;
-  EXPECT_EQ(ended.json()["done"], kBatchRecordings);
+  EXPECT_EQ(ended.json()["done"], 2);
   const auto files = run("batch collect tracks --json").json();
   const auto table = nlohmann::json::parse(bytes_of(files["json"].get<std::string>()));
   for (const auto& row : table) {
-    EXPECT_EQ(row["frames"], 16);
+    EXPECT_EQ(row["frames"], 6);
     EXPECT_EQ(row["people_per_frame"], 1.0);
     const auto hand = row["joints"]["right_hand"];
     EXPECT_NEAR(hand["seen"].get<double>() + hand["inferred"].get<double>() + hand["lost"].get<double>(), 1, 1e-9);
   }
   const std::string csv = bytes_of(files["csv"].get<std::string>());
   EXPECT_NE(csv.find("right_hand_seen,right_hand_inferred,right_hand_lost"), std::string::npos);
-  EXPECT_TRUE(fs::exists(at("tracks/by-name/day/p0/people.jsonl")));
+  EXPECT_TRUE(fs::exists(at("tracks/by-name/p0/people.jsonl")));
 }
 
 /// Processes whose parents lead to `root`, itself left out: by /proc.
