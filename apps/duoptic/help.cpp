@@ -72,11 +72,13 @@ std::string commands_text(const CLI::App& command, int columns) {
   return out;
 }
 
-/// "left|right", "FILE", "N"; empty for a flag.
+/// "left|right", "FILE", "N"; empty for a flag. Choices that are no part of a line are for the description.
 std::string values_of(const CLI::Option& option) {
   if (option.get_items_expected_max() == 0) return "";
   const std::string type = option.get_type_name(), name = type.substr(0, type.find(":{"));
-  if (name == "TEXT") return type == name ? "NAME" : fmt::format("{}", fmt::join(choices_of(option), "|"));
+  constexpr std::size_t kPartOfALine = 40;
+  const std::string choices = fmt::format("{}", fmt::join(choices_of(option), "|"));
+  if (name == "TEXT") return choices.empty() || choices.size() > kPartOfALine ? "NAME" : choices;
   if (name.starts_with("TEXT:")) return name.substr(5);
   return name == "FLOAT" || name == "INT" || name == "UINT" ? "N" : name;
 }

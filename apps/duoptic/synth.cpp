@@ -17,7 +17,8 @@ constexpr char kFooter[] =
     "Writes into DIR: left.avi and right.avi (MJPEG, 30 frames/s, two distorted, noisy webcams), calibration_truth.yml,\n"
     "truth.json (joints of every frame in the raw left camera), and every tenth frame depth/depth_NNNN.png (16 bits, 0.1 mm)\n"
     "with the person's mask depth/figure_NNNN.png. DIR appears when all is done; an earlier clip there is replaced.\n\n"
-    "wave, reach, sweep, behind, out and light move one arm, tour does all of these. turn, walk, sit and cross move whole bodies\n"
+    "wave, reach, sweep, behind, out and light move one arm, tour does all of these. turn, walk, sit and cross move whole "
+    "bodies\n"
     "of several sizes, farther away; in cross a second person comes the other way (its joints: frames[i].others).\n\n"
     "With --skew-ms the right pictures show a later moment, as those of webcams that are not in step do; truth.json tells.\n\n"
     "Example:\n"
@@ -60,7 +61,8 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("synth", "Render a person in a room: two webcams' videos with exact truth");
   const auto options = std::make_shared<Options>();
-  sub->add_option("--script", options->clip.script, "What the person does")
+  sub->add_option("--script", options->clip.script,
+                  fmt::format("What the person does: {}", fmt::join(synthetic_scripts(), ", ")))
       ->check(CLI::IsMember(synthetic_scripts()))
       ->capture_default_str();
   sub->add_option("--frames", options->clip.frames, "How many, 30 a second; 0: the script once")

@@ -78,7 +78,8 @@ TEST_F(DepthFrames, WhatIsNoRange) {
     EXPECT_EQ(run(depth + range).exit, kUsage) << range;
   const auto beyond = run(depth + "40:50");
   EXPECT_EQ(beyond.exit, kInput);
-  EXPECT_EQ(beyond.err, "duoptic depth: cannot give frames 40:50: clip.mkv gives 40 pairs, numbered from 0\n");
+  EXPECT_TRUE(beyond.err.ends_with("duoptic depth: cannot give frames 40:50: clip.mkv gives 40 pairs, numbered from 0\n"))
+      << beyond.err;
   EXPECT_FALSE(fs::exists(at("out")));
   EXPECT_EQ(run(depth + "38:50 --outputs disparity --json").json().value("frames", 0), 2);
 }
