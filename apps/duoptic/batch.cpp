@@ -28,7 +28,7 @@ constexpr char kFooter[] =
     "  duoptic batch status out --json\n"
     "  duoptic batch collect out                                 table.csv, table.json, links by name\n\n"
     "Exit codes of run: 0 all done; 3 all done, and inputs of some are cut; 4 some cannot be done because of their input;\n"
-    "5 or 1 others are missing, tried too often or stopped: the same run again goes on.";
+    "5 or 1 others are missing or tried too often, 130 or 143 stopped: the same run again goes on.";
 
 struct Options {
   std::string archive, folder, key, partition, account, time, memory;
@@ -219,7 +219,7 @@ Result<Exit> status(const Options& options) {
   return Exit::kOk;
 }
 
-/// Stopped, it ends with 1: the task is still to be done.
+/// Stopped by a signal, it ends with the code of that: the task is still to be done.
 Result<Exit> work(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(const Worked worked,
                  work_on(options.folder, options.key, this_tool(options), [] { return Interrupt::asked(); }));
