@@ -84,6 +84,7 @@ class CalibrateTool : public testing::Test {
 
 TEST_F(CalibrateTool, MakesARigAndItsReport) {
   const Ended ended = run("calibrate good --board chessboard:7x5 --left-name L1 --json -o rig.json");
+  constexpr double kSquare_mm = 30, kAssumed_mm = 29;  // as `duoptic board` prints them on A4
   ASSERT_EQ(ended.exit, 0) << ended.err;
   const auto json = nlohmann::json::parse(ended.out);
   EXPECT_EQ(json["pairs"], kViews);
@@ -92,8 +93,9 @@ TEST_F(CalibrateTool, MakesARigAndItsReport) {
   const auto rig = load_rig(at("rig.json"));
   ASSERT_TRUE(rig) << rig.error().what;
   EXPECT_EQ(rig->left_name, "L1");
-  EXPECT_NEAR(rig->baseline_m(), test::crooked_rig().baseline_m(), 3 * rig->uncertainty->baseline_m);
-  EXPECT_NE(json["warnings"].dump().find("--square-mm was not given"), std::string::npos) << json["warnings"];
+  EXPECT_NEAR(rig->baseline_m() * kSquare_mm / kAssumed_mm, test::crooked_rig().baseline_m(), 3 * rig->uncertainty->baseline_m);
+  EXPECT_NE(json["warnings"].dump().find("--square-mm was not given, and squares of 29 mm"), std::string::npos)
+      << json["warnings"];
   const std::string report = test::bytes_of(at("rig_report.html"));
   for (const char* part : {"<!doctype html>", "only 6 views", "data:image/jpeg;base64,", "depth at 1.5 m", "</html>"})
     EXPECT_NE(report.find(part), std::string::npos) << part;
@@ -116,7 +118,7 @@ TEST_F(CalibrateTool, TakesTheStillMomentsOfVideos) {
     }
     ASSERT_TRUE(video->finish());
   }
-  const Ended ended = run("calibrate left.avi right.avi --board chessboard:7x5 --json -o video.json");
+  const Ended ended = run("calibrate left.avi right.avi --board chessboard:7x5 --square-mm 30 --json -o video.json");
   ASSERT_EQ(ended.exit, 0) << ended.err;
   EXPECT_EQ(nlohmann::json::parse(ended.out)["pairs"], kViews * kFramesAPlace / 10);
   const auto rig = load_rig(at("video.json"));
@@ -163,7 +165,7 @@ TEST_F(CalibrateTool, SaysInOneLineWhatIsWrong) {
   expect_failure("none", "none");
   expect_failure("good/left0.png good/right0.png", "one pair of pictures is too few");
   expect_failure("good --board chess", "chessboard:9x6");
-  expect_failure("good --square-mm 0" + board, "from 1 to 1000");
+  expect_failure("good --square-mm 0" + board, "from 1 to 1000", kUsage);
   expect_failure("good --near 0", "near", kUsage);
   const Ended nowhere = run("calibrate good --quiet -o no/rig.json" + board);
   EXPECT_EQ(nowhere.exit, kOutput) << nowhere.err;
