@@ -82,10 +82,10 @@ trap finish EXIT
 fail() { echo "FAILED: $1"; exit 1; }
 # until SECONDS COMMAND: waits for it to be true.
 until_true() {
-  local left=$(($1 * 10))
+  local end=$((SECONDS + $1))
   shift
   while ! "$@"; do
-    ((left-- > 0)) || fail "waited in vain for: $*"
+    ((SECONDS < end)) || fail "waited in vain for: $*"
     sleep 0.1
   done
 }
@@ -98,13 +98,13 @@ until_true 20 bash -c '[[ $(sinfo -h -o %T) == idle ]]'
 say "a controller and two nodes"
 
 # Slow on purpose, so that all that is killed is at work: plain loops.
-"$tool" synth --script wave --frames 24 --size 320x240 --quiet -o clip >/dev/null
+"$tool" synth --script wave --frames 20 --size 160x120 --quiet -o clip >/dev/null
 for i in 01 02 03 04 05 06 07 08 09 10 11 12; do
   mkdir -p "archive/p$i"
   cp clip/left.avi clip/right.avi "archive/p$i/"
 done
 cp clip/calibration_truth.yml archive/
-options=(--depth -- --engine ref --max-disparity 64)
+options=(--depth -- --engine ref --max-disparity 48)
 "$tool" batch plan archive -o serial "${options[@]}" >/dev/null
 "$tool" batch run serial --local --jobs 1 --quiet
 say "12 recordings, done by one local run"
@@ -114,6 +114,18 @@ say "12 recordings, done by one local run"
 runner=$!
 at_work() { [[ -n $(tasks_of "$1" | xargs -r -I{} cat /proc/{}/comm 2>/dev/null | grep duoptic) ]]; }
 done_tasks() { ls cluster/done 2>/dev/null | wc -l; }
+
+# What an administrator does with nodes whose jobs the controller forgot.
+resume_nodes() {
+  local node state
+  while read -r node state; do
+    [[ $state == *drain* || $state == *down* ]] && kill -0 "$(cat "slurmd.$node.pid" 2>/dev/null)" 2>/dev/null &&
+      scontrol update "NodeName=$node" State=RESUME 2>/dev/null
+  done < <(sinfo -h -N -o '%N %T' 2>/dev/null)
+  true
+}
+workers() { for p in $(tasks_of n1; tasks_of n2); do tr '\0' ' ' <"/proc/$p/cmdline" 2>/dev/null | grep -q 'batch work' && echo "$p"; done; }
+a_worker() { resume_nodes; worker=$(workers | head -n 1); [[ -n $worker ]]; }
 
 until_true 60 at_work n1
 kill_node n1
@@ -126,16 +138,11 @@ sleep 2
 slurmctld
 slurmd -N n1
 say "the controller and n1 are back"
-until_true 60 at_work n2
-worker=$(for p in $(tasks_of n2); do tr '\0' ' ' <"/proc/$p/cmdline" 2>/dev/null | grep -q 'batch work' && echo "$p"; done | head -n 1)
+until_true 60 a_worker
 kill -9 "$worker"
 say "a worker is killed; $(done_tasks) of 12 done"
-# What an administrator does with nodes whose jobs the controller forgot.
 while kill -0 "$runner" 2>/dev/null; do
-  sinfo -h -N -o '%N %T' 2>/dev/null | awk '/drain|down/ { print $1 }' | while read -r node; do
-    [[ -f slurmd.$node.pid ]] && kill -0 "$(cat "slurmd.$node.pid")" 2>/dev/null &&
-      scontrol update "NodeName=$node" State=RESUME 2>/dev/null || true
-  done
+  resume_nodes
   ((SECONDS < 300)) || fail "not done after 300 s"
   sleep 0.5
 done
