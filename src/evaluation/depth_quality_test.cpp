@@ -71,13 +71,15 @@ TEST(DepthQuality, MeetsTheTruthOfNoisyWalls) {
     }
 }
 
-// A turned wall is as flat: its distance is that at a right angle.
+// A turned wall is as flat: its distance is that at a right angle, and the foot of a point on it lies nearer by the cosine,
+// twice.
 TEST(DepthQuality, ATurnedWallIsAsFlat) {
   const DepthQuality q = measured({.z_m = 1.5, .turn_deg = 20, .noise_px = 0.2}, 3);
   const double turn = 20 * std::numbers::pi / 180;
   EXPECT_NEAR(q.angle_deg, 20, 0.3);
   EXPECT_NEAR(q.distance_m, 1.5 * std::cos(turn), 0.005);
-  EXPECT_NEAR(q.subpixel_rms_px, with_rounding(0.2), 0.1 * with_rounding(0.2));
+  const double foot_px = with_rounding(0.2) * std::cos(turn) * std::cos(turn);
+  EXPECT_NEAR(q.subpixel_rms_px, foot_px, 0.05 * foot_px);
   EXPECT_FALSE(q.z_error_mm);
 }
 

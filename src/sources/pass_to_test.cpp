@@ -82,7 +82,7 @@ TEST(PassTo, VideosThatPairByTimes) {
     write_video_at(dir / ("right" + kind), AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P, most_of(kLong, 3, 20));
     const auto left = open_source(dir / ("left" + kind));
     ASSERT_TRUE(left);
-    EXPECT_EQ(dynamic_cast<FileSource&>(**left).indexed_times().size(), kind == ".mkv" ? 0u : 38u);
+    EXPECT_EQ(dynamic_cast<FileSource&>(**left).indexed_times().size(), kind == ".mkv" ? 0u : 38u) << kind;
     expect_the_same_after_passing(dir / ("left" + kind), dir / ("right" + kind));
   }
   expect_the_same_after_passing(dir / "left.avi", dir / "right.avi", {.skew_ns = 40'000'000});

@@ -248,14 +248,15 @@ bool VideoFile::follows() {
 std::vector<TimeNs> VideoFile::indexed_times() {
   const bool names_each = std::strcmp(container_->iformat->name, "avi") == 0 || has_index();
   // How bright a gray of 16 bits comes depends on the pictures before.
-  if (!alone_ || is_gray16(decoder_->pix_fmt) || !names_each || lacks_bytes_ != false) return {};
+  if (!alone_ || is_gray16(decoder_->pix_fmt) || !names_each || lacks_bytes_.value_or(!has_index())) return {};
   AVStream* const s = container_->streams[stream_];
+  const std::int64_t bytes = avio_size(container_->pb);
   std::vector<TimeNs> times;
   for (int i = 0; i < avformat_index_get_entries_count(s); ++i) {
     const AVIndexEntry& entry = *avformat_index_get_entry(s, i);
     const TimeNs t = av::to_ns(entry.timestamp, s->time_base) + shift_ns_;
     const bool rises = times.empty() || t > times.back();
-    if ((entry.flags & AVINDEX_DISCARD_FRAME) != 0 || entry.size <= 0 || !rises) return {};
+    if ((entry.flags & AVINDEX_DISCARD_FRAME) != 0 || entry.size <= 0 || entry.pos + entry.size > bytes || !rises) return {};
     times.push_back(t);
   }
   return times;
