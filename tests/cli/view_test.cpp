@@ -147,8 +147,11 @@ TEST_F(Running, AloneItAsksAndRemembers) {
   press("2");  // the first is the rendered person; here are no cameras
   ASSERT_TRUE(waited([&] { return told("xdotool getwindowname " + window_).find("choose") == std::string::npos; }));
   press("F1");
-  press("s");
-  ASSERT_TRUE(waited([] { return fs::exists(at("duoptic_view_001.ply")); }));
+  const auto saved = [this] {
+    press("s");  // there are points from the first frame on
+    return fs::exists(at("duoptic_view_001.ply"));
+  };
+  ASSERT_TRUE(waited(saved));
   EXPECT_EQ(bytes_of(at("duoptic_view_001.ply")).rfind("ply\n", 0), 0u);
   EXPECT_EQ(screenshot().size(), (Size{640, 480}));
   press("q");

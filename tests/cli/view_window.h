@@ -158,6 +158,7 @@ class Running : public ViewWindow {
   void press(const std::string& key) { told("xdotool windowfocus " + window_ + " key " + key); }
   Image<Rgb8> screenshot() {
     const std::string name = fmt::format("duoptic_view_{:03}.png", ++screenshots_);
+    fs::remove(at(name));  // of the window before
     press("F12");
     Picture picture;
     EXPECT_TRUE(waited([&] { return fs::exists(at(name)); })) << bytes_of(at("view_err.txt"));
