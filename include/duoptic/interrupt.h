@@ -11,11 +11,12 @@ namespace [[gnu::visibility("default")]] duo {
 /// send it twice at once.
 class Interrupt {
  public:
-  /// From now on signals are remembered. One that the caller ignores, as nohup does, stays ignored.
+  /// From now on signals are remembered. SIGHUP stays ignored where the caller ignores it, as nohup does; SIGINT does not: a
+  /// script's shell ignores it for all that it starts in the background, and the script is who sends it.
   static void listen() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
       struct sigaction action {};
-      if (sigaction(signal, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
+      if (sigaction(signal, nullptr, &action) != 0 || (signal == SIGHUP && action.sa_handler == SIG_IGN)) continue;
       action = {};
       action.sa_handler = remember;
       sigaction(signal, &action, nullptr);
