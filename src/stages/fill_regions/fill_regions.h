@@ -23,7 +23,7 @@ namespace duo {
 /// Units    1/16 px
 /// Border   edge pixels continue
 /// Threads  rows, and then regions, are independent; of a simd version only the flat pixels are vectors
-/// Exact    ref and simd agree bit for bit: integers
+/// Exact    ref and simd agree bit for bit: both find a region's plane by the same function, and all else is integers
 /// Source   planes of colour segments as in Klaus, Sormann, Karner, "Segment-based stereo matching using belief propagation and
 /// a
 ///          self-adapting dissimilarity measure", 2006; here of flat regions, and of holes alone

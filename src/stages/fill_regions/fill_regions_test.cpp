@@ -48,7 +48,8 @@ TEST(RegionPlane, ManyPointsTellTheSlope) {
   EXPECT_NEAR(plane.along_y_q16 / 65536.0, 2, 0.2);
 }
 
-// A step of a sixteenth of a pixel amid the points is a slope of 1/20 to least squares, and 5 px off 100 columns beyond them.
+// To least squares a step of 1/16 px amid 20 columns is a slope of 0.075/16 px per column: half a pixel 100 columns beyond
+// them.
 TEST(RegionPlane, AConstantIsPreferredWhereItSaysAsMuch) {
   std::vector<PlanePoint> wall = points(0);
   for (PlanePoint& p : wall) p.d_q4 = static_cast<std::uint16_t>(p.x < 10 ? 100 : 101);

@@ -1,4 +1,4 @@
-// One robust plane through points of a disparity map, in integers.
+// One robust plane through points of a disparity map.
 #pragma once
 
 #include <cstdint>
