@@ -1,5 +1,7 @@
 #include "core/pool.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <exception>
 
@@ -12,11 +14,21 @@ namespace {
 /// To wake a thread that sleeps takes 5 to 50 us, as long as a layer of a network takes. So a thread spins this long before it
 /// sleeps, and yields meanwhile: who has work gets the core.
 constexpr std::int64_t kSpin_ns = 30'000;
+/// A thread that runs together with others pauses this often for them, 2 to 10 us, before it yields.
+constexpr int kPauses = 200;
 
 template <class Ready>
 void spin_until(Ready ready) {
   for (const std::int64_t end_ns = wall_ns() + kSpin_ns; !ready() && wall_ns() < end_ns;) std::this_thread::yield();
 }
+
+/// What the calling thread is a member of.
+struct Membership {
+  const Pool* pool = nullptr;
+  int part = 0;
+  std::int64_t arrived = 0;  // as many as have arrived when all members have ended their part of this thread's last job
+};
+thread_local Membership membership;
 
 }  // namespace
 
@@ -49,17 +61,22 @@ Pool::Effort Pool::take_effort() {
   return out;
 }
 
+std::pair<int, int> Pool::Job::items(int part, int parts) const {
+  const int blocks = (count + grain - 1) / grain;
+  const auto bound = [&](int p) { return std::min(count, static_cast<int>(std::int64_t{blocks} * p / parts) * grain); };
+  return {bound(part), bound(part + 1)};
+}
+
 void Pool::run(int count, int grain, Call call, void* context) {
   if (count <= 0) return;
   if (workers_.empty()) return call(context, 0, count, 0);
+  const Job job{count, grain, call, context};
+  if (membership.pool == this) return run_as_member(job);
   const std::int64_t begin_ns = wall_ns();
   const bool alone = in_use_ == 1 || count <= grain;
   {
     const std::lock_guard lock(mutex_);
-    count_ = count;
-    grain_ = grain;
-    call_ = call;
-    context_ = context;
+    job_ = job;
     parts_ = alone ? 1 : in_use_;
     busy_ = parts_ - 1;
     round_ += !alone;
@@ -76,16 +93,26 @@ void Pool::run(int count, int grain, Call call, void* context) {
   wall_ns_ += wall_ns() - begin_ns;
 }
 
+Pool::Member::Member(Pool& pool, int part) { membership = {&pool, part, 0}; }
+Pool::Member::~Member() { membership = {}; }
+
+void Pool::run_as_member(const Job& job) {
+  const auto [begin, end] = job.items(membership.part, parts_);
+  if (begin < end) job.call(job.context, begin, end, membership.part);
+  arrived_.fetch_add(1, std::memory_order_acq_rel);
+  const std::int64_t all = membership.arrived += parts_;
+  for (int spins = 0; arrived_.load(std::memory_order_acquire) < all; ++spins)
+    spins < kPauses ? hwy::Pause() : std::this_thread::yield();
+}
+
 void Pool::run_part(int part) {
-  const int blocks = (count_ + grain_ - 1) / grain_;
-  const auto bound = [&](int p) { return std::min(count_, static_cast<int>(std::int64_t{blocks} * p / parts_) * grain_); };
-  const int begin = bound(part), end = bound(part + 1);
+  const auto [begin, end] = job_.items(part, parts_);
   if (begin < end) compute(begin, end, part);
 }
 
 void Pool::compute(int begin, int end, int part) {
   const std::int64_t begin_ns = clock_ns(CLOCK_THREAD_CPUTIME_ID);
-  call_(context_, begin, end, part);
+  job_.call(job_.context, begin, end, part);
   cpu_ns_ += clock_ns(CLOCK_THREAD_CPUTIME_ID) - begin_ns;
 }
 

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <thread>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace duo {
@@ -48,23 +49,53 @@ class Pool {
     run(count, grain, call, const_cast<void*>(static_cast<const void*>(&f)));
   }
 
+  /// Calls f() on all threads in use at once. Within f, each `rows` is called by all of these threads, in the same order: a
+  /// call runs the thread's own part, and returns when the others have run theirs. What f does outside of `rows`, every thread
+  /// does. For jobs of microseconds that follow each other, as the layers of a network: to wait for each other costs
+  /// such threads 1 us per job, to wake them 5 to 50.
+  template <class F>
+  void together(F&& f) {
+    const auto each = [&](int, int, int part) {
+      const Member member(*this, part);
+      f();
+    };
+    if (in_use_ == 1) return f();
+    arrived_ = 0;
+    rows(in_use_, each);
+  }
+
  private:
   using Call = void (*)(void* context, int begin, int end, int part);
+  struct Job {
+    int count = 0, grain = 1;
+    Call call = nullptr;
+    void* context = nullptr;
+    /// Items of one of `parts` parts.
+    std::pair<int, int> items(int part, int parts) const;
+  };
+  /// The calling thread is a member of what runs together, while this lives.
+  class Member {
+   public:
+    Member(Pool& pool, int part);
+    ~Member();
+    Member(const Member&) = delete;
+    Member& operator=(const Member&) = delete;
+  };
   void run(int count, int grain, Call call, void* context);
+  void run_as_member(const Job& job);
   void run_part(int part);
   void compute(int begin, int end, int part);
   void work(int part);
 
   std::mutex mutex_;
   std::condition_variable start_, done_;
-  std::atomic<std::uint64_t> round_ = 0;  // written under the mutex, as all that follows
-  std::atomic<int> busy_ = 0;             // threads that have not ended this round
-  int in_use_ = 1;                        // the caller's
-  int parts_ = 1;                         // of this round
+  std::atomic<std::uint64_t> round_ = 0;   // written under the mutex, as all that follows
+  std::atomic<int> busy_ = 0;              // threads that have not ended this round
+  std::atomic<std::int64_t> arrived_ = 0;  // members that have ended a job of what runs together, over all jobs
+  int in_use_ = 1;                         // the caller's
+  int parts_ = 1;                          // of this round
   bool stop_ = false;
-  int count_ = 0, grain_ = 1;
-  Call call_ = nullptr;
-  void* context_ = nullptr;
+  Job job_;
   std::int64_t wall_ns_ = 0;
   std::atomic<std::int64_t> cpu_ns_ = 0;
   std::vector<std::jthread> workers_;  // last member: its threads use all others

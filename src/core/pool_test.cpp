@@ -102,6 +102,31 @@ TEST(Pool, ThreadsThatRestedDoNotWorkTwice) {
   }
 }
 
+// Each step reads what a neighbour's thread wrote in the step before; a job of one item is done by one thread.
+TEST(Pool, StepsThatRunTogetherWaitForEachOther) {
+  constexpr int kCount = 1000, kSteps = 500;
+  for (const int threads : {1, 2, 5}) {
+    Pool pool(threads);
+    for (int again = 0; again < 3; ++again) {
+      std::vector<int> even(kCount), odd(kCount);
+      for (int i = 0; i < kCount; ++i) even[i] = i;
+      int alone = 0;
+      pool.together([&] {
+        for (int step = 0; step < kSteps; ++step) {
+          const std::vector<int>& before = step % 2 == 0 ? even : odd;
+          std::vector<int>& after = step % 2 == 0 ? odd : even;
+          pool.rows(kCount, [&](int begin, int end) {
+            for (int i = begin; i < end; ++i) after[i] = before[(i + 1) % kCount] + 1;
+          });
+          pool.rows(1, [&](int, int) { ++alone; });
+        }
+      });
+      for (int i = 0; i < kCount; ++i) ASSERT_EQ(even[i], (i + kSteps) % kCount + kSteps) << threads << " threads";
+      EXPECT_EQ(alone, kSteps);
+    }
+  }
+}
+
 TEST(Pool, TellsWhatItsThreadsTook) {
   Pool pool(2);
   for (const int threads : {1, 2}) {

@@ -79,6 +79,11 @@ Tensor16 NetRun::tensor(int index) {
 std::size_t NetRun::memory_bytes() const { return plan_.count * sizeof(std::int16_t); }
 
 void NetRun::run(Pool& pool) {
+  if (loops_ == Loops::kPlain) return run_layers(pool);
+  pool.together([&] { run_layers(pool); });
+}
+
+void NetRun::run_layers(Pool& pool) {
   for (std::size_t i = 0; i < works_.size(); ++i) {
     const NetLayer& layer = net_->layers[i];
     Tensor16 x = tensor(layer.a);

@@ -27,6 +27,8 @@ class NetRun {
   std::size_t memory_bytes() const;
 
  private:
+  void run_layers(Pool& pool);
+
   const Net* net_;
   Loops loops_;
   MemoryPlan plan_;

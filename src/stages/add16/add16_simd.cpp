@@ -61,7 +61,7 @@ void add16(Pool& pool, const Add16& layer, ConstTensor16 a, ConstTensor16 b, Ten
   DUO_CHECK(a.size() == y.size() && b.size() == y.size());
   DUO_CHECK(a.channels() == y.channels() && b.channels() <= y.channels());
   const auto pixels = HWY_DYNAMIC_DISPATCH(add_pixels);
-  const int grain = std::max(1, (1 << 16) / y.channels());  // values: less is done before another thread is awake
+  const int grain = std::max(1, (1 << 12) / y.channels());  // values: less is added while threads wait for each other
   pool.rows(
       y.pixels(), [&](int begin, int end) { pixels(layer, a, b, y, begin, end); }, grain);
 }

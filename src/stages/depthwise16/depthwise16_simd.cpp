@@ -166,11 +166,9 @@ void depthwise16(Pool& pool, const Depthwise16& layer, ConstTensor16 x, Tensor16
       part(layer, x, y, oy, std::min(oy + band, y.height()), c, std::min(c + kDepthwiseGroup, layer.channels));
     }
   };
-  constexpr std::int64_t kFewProducts = 1 << 18;  // done before another thread is awake
-  if (std::int64_t{y.pixels()} * layer.channels * layer.window * layer.window < kFewProducts)
-    run(0, bands * groups);
-  else
-    pool.rows(bands * groups, run);
+  constexpr std::int64_t kFewProducts = 1 << 15;  // as long as threads wait for each other
+  const bool few = std::int64_t{y.pixels()} * layer.channels * layer.window * layer.window < kFewProducts;
+  pool.rows(bands * groups, run, few ? bands * groups : 1);
 }
 
 }  // namespace simd

@@ -126,16 +126,16 @@ void matmul16(Pool& pool, const Matmul16& layer, ConstTensor16 x, Tensor16 y) {
   DUO_CHECK(layer.inputs % 2 == 0 && layer.packed.size() == packed_words(layer));
   const auto part = HWY_DYNAMIC_DISPATCH(matmul_part);
   constexpr int kGrainPixels = 8, kGrainOutputs = 2 * kMatmulBlock, kFewPixels = 32;
-  constexpr std::int64_t kFewProducts = 1 << 19;  // done before another thread is awake
+  constexpr std::int64_t kFewProducts = 1 << 16;  // as long as threads wait for each other
   const int pixels = x.pixels();
-  if (std::int64_t{pixels} * layer.inputs * layer.outputs < kFewProducts)
-    part(layer, x, y, 0, pixels, 0, layer.outputs);
-  else if (pixels < kFewPixels)
+  const bool few = std::int64_t{pixels} * layer.inputs * layer.outputs < kFewProducts;
+  if (pixels < kFewPixels)
     pool.rows(
-        layer.outputs, [&](int begin, int end) { part(layer, x, y, 0, pixels, begin, end); }, kGrainOutputs);
+        layer.outputs, [&](int begin, int end) { part(layer, x, y, 0, pixels, begin, end); },
+        few ? layer.outputs : kGrainOutputs);
   else
     pool.rows(
-        pixels, [&](int begin, int end) { part(layer, x, y, begin, end, 0, layer.outputs); }, kGrainPixels);
+        pixels, [&](int begin, int end) { part(layer, x, y, begin, end, 0, layer.outputs); }, few ? pixels : kGrainPixels);
 }
 
 }  // namespace simd
