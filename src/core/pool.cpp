@@ -14,8 +14,8 @@ namespace {
 /// To wake a thread that sleeps takes 5 to 50 us, as long as a layer of a network takes. So a thread spins this long before it
 /// sleeps, and yields meanwhile: who has work gets the core.
 constexpr std::int64_t kSpin_ns = 30'000;
-/// A thread that runs together with others pauses this often for them, 2 to 10 us, before it yields.
-constexpr int kPauses = 200;
+/// A thread that runs together with others pauses this often for them, 2 to 10 us, then yields this often, and then sleeps.
+constexpr int kPauses = 200, kYields = 200;
 
 template <class Ready>
 void spin_until(Ready ready) {
@@ -26,7 +26,7 @@ void spin_until(Ready ready) {
 struct Membership {
   const Pool* pool = nullptr;
   int part = 0;
-  std::int64_t arrived = 0;  // as many as have arrived when all members have ended their part of this thread's last job
+  int arrived = 0;  // as many as have arrived when all members have ended their part of this thread's last job
 };
 thread_local Membership membership;
 
@@ -99,10 +99,16 @@ Pool::Member::~Member() { membership = {}; }
 void Pool::run_as_member(const Job& job) {
   const auto [begin, end] = job.items(membership.part, parts_);
   if (begin < end) job.call(job.context, begin, end, membership.part);
-  arrived_.fetch_add(1, std::memory_order_acq_rel);
-  const std::int64_t all = membership.arrived += parts_;
-  for (int spins = 0; arrived_.load(std::memory_order_acquire) < all; ++spins)
-    spins < kPauses ? hwy::Pause() : std::this_thread::yield();
+  const int all = membership.arrived += parts_;
+  int arrived = arrived_.fetch_add(1, std::memory_order_acq_rel) + 1;
+  if (arrived == all) return arrived_.notify_all();
+  for (int looks = 0; arrived < all; arrived = arrived_.load(std::memory_order_acquire), ++looks)
+    if (looks < kPauses)
+      hwy::Pause();
+    else if (looks < kPauses + kYields)
+      std::this_thread::yield();
+    else
+      arrived_.wait(arrived, std::memory_order_acquire);
 }
 
 void Pool::run_part(int part) {

@@ -89,11 +89,11 @@ class Pool {
 
   std::mutex mutex_;
   std::condition_variable start_, done_;
-  std::atomic<std::uint64_t> round_ = 0;   // written under the mutex, as all that follows
-  std::atomic<int> busy_ = 0;              // threads that have not ended this round
-  std::atomic<std::int64_t> arrived_ = 0;  // members that have ended a job of what runs together, over all jobs
-  int in_use_ = 1;                         // the caller's
-  int parts_ = 1;                          // of this round
+  std::atomic<std::uint64_t> round_ = 0;  // written under the mutex, as all that follows
+  std::atomic<int> busy_ = 0;             // threads that have not ended this round
+  std::atomic<int> arrived_ = 0;          // members that have ended a job of what runs together, over all jobs
+  int in_use_ = 1;                        // the caller's
+  int parts_ = 1;                         // of this round
   bool stop_ = false;
   Job job_;
   std::int64_t wall_ns_ = 0;
