@@ -17,8 +17,9 @@ struct TrackingOptions {
   std::string tracker;         // empty: the command's own
   std::string model = "full";  // of a tracker with networks
   int max_disparity = 0;       // 0: what something at kNearest_m has
-  bool all_maps = false;       // frames are drawn or scored, not only tracked
-  bool in_bulk = false;        // of files: as many frames per second as can be, rather than each soon
+  bool focus = false;
+  bool all_maps = false;  // frames are drawn or scored, not only tracked
+  bool in_bulk = false;   // of files: as many frames per second as can be, rather than each soon
 
   void add_to(CLI::App& app);
   /// With a tracker where none was chosen.

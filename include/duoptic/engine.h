@@ -51,6 +51,15 @@ struct Setup {
   bool time_stages = false;
 };
 
+/// A part of a frame: a window of the left rectified picture, and the disparities in it.
+///
+/// Units  px; disparities [begin, end)
+struct Focus {
+  Window window;  // empty: the whole picture, and all disparities
+  int disparity_begin = 0, disparity_end = 0;
+  friend bool operator==(const Focus&, const Focus&) = default;
+};
+
 /// Turns pairs into frames, in order: submit, collect, submit, … A device that is lost on the way is replaced by the CPU: no
 /// frame is missing, and take_event() tells.
 ///
@@ -69,6 +78,11 @@ class Engine {
   /// origin, confidence and depth are the same, bit for bit, as of the whole picture; outside there are none. Engine simd with
   /// matcher sgm leaves out the rows they do not depend on; where all is computed anyway they only cut it out.
   virtual void look_at(std::span<const Window> windows) = 0;
+  /// From the next submit() on only this window is matched, and in it only these disparities; outside there are none, and
+  /// nothing is filled. What is not matched costs nothing; in return values are not those of the whole picture: paths begin at
+  /// the window's border. The same bits on every engine that can_focus(). Takes the place of look_at().
+  virtual void focus(const Focus&) {}
+  virtual bool can_focus() const { return false; }
   /// Starts work on a pair of the size given to prepare(); the pair must live until its collect() returns.
   virtual void submit(const Pair& pair) = 0;
   /// The finished frame of the oldest pair submitted. It belongs to whoever has its pointer, in any thread, and outlives the
@@ -103,4 +117,4 @@ struct ParameterInfo {
 /// Errors  unknown matcher or preset
 Result<std::vector<ParameterInfo>> matcher_parameters(std::string_view matcher, std::string_view preset);
 
-}  // namespace duo
+}  // namespace gnu::visibility("default")]]duo

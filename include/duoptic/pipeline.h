@@ -37,6 +37,8 @@ struct PipelineSetup {
   BodyModel body_model = BodyModel::kFull;  // of a tracker with networks
   std::int64_t first = 0;                   // pairs before this number are passed over
   std::int64_t every = 1;                   // and of those from there on, all but every N-th
+  bool focus = false;                       // frames are matched around the people of frames before, and nowhere else; every
+                                            // 15th as a whole. Of a tracker that needs no more, on engines that can_focus()
   bool tell_times = false;                  // to the sinks: times differ from run to run
   RigCheck check = RigCheck::kNone;
 };
@@ -152,4 +154,4 @@ class Pipeline {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace duo
+}  // namespace gnu::visibility("default")]]duo

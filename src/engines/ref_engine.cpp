@@ -8,6 +8,7 @@
 #include "core/clock.h"
 #include "core/object_pool.h"
 #include "engines/engines.h"
+#include "engines/focused.h"
 #include "engines/keep_windows.h"
 #include "engines/prepared.h"
 #include "stages/depth/depth.h"
@@ -30,6 +31,7 @@ class RefEngine final : public Engine {
     DUO_TRY_ASSIGN(prepared_, prepare_setup(setup));
     frames_ = ObjectPool<Frame>(1 + kSpareFrames, [this] { return make_frame(prepared_); });
     Matchers::make(prepared_.matcher, match_setup(prepared_), matcher_);
+    focused_ = {};
     if (setup.fill) {
       unfilled_ = Image<std::uint16_t>(prepared_.size);
     }
@@ -39,6 +41,8 @@ class RefEngine final : public Engine {
   }
 
   void look_at(std::span<const Window> windows) override { windows_.assign(windows.begin(), windows.end()); }
+  void focus(const Focus& focus) override { focus_ = focus; }
+  bool can_focus() const override { return true; }
 
   void submit(const Pair& pair) override {
     DUO_CHECK(matcher_.has_value());
@@ -57,10 +61,17 @@ class RefEngine final : public Engine {
 
     Disparity& disparity = frame.disparity;
     const GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside};
-    std::visit([&](auto& matcher) { matcher.match(gray, {disparity.d_q4, frame.confidence}, timer_); }, *matcher_);
+    const bool whole = focus_.window.within(prepared_.size).empty();
+    if (whole)
+      std::visit([&](auto& matcher) { matcher.match(gray, {disparity.d_q4, frame.confidence}, timer_); }, *matcher_);
+    else
+      focused_.match(
+          prepared_, focus_, 0,
+          [&](const MatchSetup& of_part, Matchers::Ref& out) { Matchers::make(prepared_.matcher, of_part, out); }, timer_,
+          frame);
     ref::mark_measured(disparity.d_q4, disparity.origin);
-    if (setup.fill) fill(frame);
-    keep_windows(windows_, frame);
+    if (setup.fill && whole) fill(frame);
+    if (whole) keep_windows(windows_, frame);
     timer_.stage("fill");
     if (setup.wants.depth) ref::depth(disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
     timer_.stage("depth");
@@ -110,6 +121,8 @@ class RefEngine final : public Engine {
   Prepared prepared_;
   Matchers::Ref matcher_;
   std::vector<Window> windows_;
+  Focus focus_;
+  Focused<Matchers::Ref> focused_;
   ObjectPool<Frame> frames_;
   std::shared_ptr<Frame> current_;  // until it is collected
   Image<std::uint16_t> unfilled_;

@@ -30,9 +30,11 @@ class FrameThread {
   }
   ~FrameThread() { jobs_.close(); }
 
-  void submit(const Pair& pair, const std::vector<Window>& windows, std::uint64_t turn, std::shared_ptr<Frame> frame) {
+  void submit(const Pair& pair, const std::vector<Window>& windows, const Focus& focus, std::uint64_t turn,
+              std::shared_ptr<Frame> frame) {
     job_.pair = &pair;
     job_.turn = turn;
+    job_.focus = focus;
     job_.windows = windows;
     job_.frame = std::move(frame);
     jobs_.put(job_);
@@ -47,6 +49,7 @@ class FrameThread {
   struct Job {
     const Pair* pair = nullptr;
     std::vector<Window> windows;
+    Focus focus;
     std::uint64_t turn = 0;
     std::shared_ptr<Frame> frame;
   };
@@ -56,7 +59,7 @@ class FrameThread {
     for (Job job;;) {
       DUO_TRY_ASSIGN(const Taken taken, jobs_.take(job));
       if (taken == Taken::kClosed) return {};
-      frames_.make(*job.pair, job.windows, job.turn, *job.frame);
+      frames_.make(*job.pair, job.windows, job.focus, job.turn, *job.frame);
       done_.put(job.frame);
     }
   }
@@ -97,16 +100,18 @@ class SimdEngine final : public Engine {
   }
 
   void look_at(std::span<const Window> windows) override { windows_.assign(windows.begin(), windows.end()); }
+  void focus(const Focus& focus) override { focus_ = focus; }
+  bool can_focus() const override { return true; }
 
   void submit(const Pair& pair) override {
     DUO_CHECK(prepared_.setup.size == pair.left.pixels.size() && prepared_.setup.size == pair.right.pixels.size());
     DUO_CHECK(count_ < in_flight());
     std::shared_ptr<Frame> frame = frames_.lend();
     if (alone_ != nullptr) {
-      alone_->make(pair, windows_, turn_, *frame);
+      alone_->make(pair, windows_, focus_, turn_, *frame);
       frame_ = std::move(frame);
     } else {
-      thread_of(first_ + count_).submit(pair, windows_, turn_, std::move(frame));
+      thread_of(first_ + count_).submit(pair, windows_, focus_, turn_, std::move(frame));
     }
     ++count_;
     ++turn_;
@@ -162,6 +167,7 @@ class SimdEngine final : public Engine {
   std::vector<std::unique_ptr<FrameThread>> threads_of_frames_;  // or several that take turns
   std::shared_ptr<const Frame> frame_;                           // of alone_, until it is collected
   std::vector<Window> windows_;                                  // of the next submit
+  Focus focus_;                                                  // likewise
   std::uint64_t turn_ = 0;                                       // likewise, since prepare()
   int first_ = 0, count_ = 0;                                    // in flight: count_ of them, the oldest in thread first_
 };

@@ -22,7 +22,7 @@ SimdFrames::SimdFrames(const Prepared& prepared, int threads) : prepared_(prepar
   next_ = Image<std::uint8_t>(prepared.setup.size);
 }
 
-void SimdFrames::make(const Pair& pair, std::span<const Window> windows, std::uint64_t turn, Frame& frame) {
+void SimdFrames::make(const Pair& pair, std::span<const Window> windows, const Focus& focus, std::uint64_t turn, Frame& frame) {
   DUO_CHECK(pair.left.pixels.size() == prepared_.setup.size && pair.right.pixels.size() == prepared_.setup.size);
   const Setup& setup = prepared_.setup;
   pool_.use(throttle_.threads());
@@ -38,14 +38,26 @@ void SimdFrames::make(const Pair& pair, std::span<const Window> windows, std::ui
   timer_.stage("color");
   prepare_view(pair.right, maps ? &maps->right : nullptr, frame.right, frame.right_inside);
 
-  // What fills a hole may come from anywhere in the picture.
-  const RowBand matched = setup.fill ? RowBand{} : RowBand::of(windows, prepared_.size);
   Disparity& disparity = frame.disparity;
-  const GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside, turn};
-  std::visit([&](auto& matcher) { matcher.match(gray, {disparity.d_q4, frame.confidence}, timer_, matched); }, *matcher_);
+  const bool whole = focus.window.within(prepared_.size).empty();
+  if (whole) {
+    // What fills a hole may come from anywhere in the picture.
+    const RowBand matched = setup.fill ? RowBand{} : RowBand::of(windows, prepared_.size);
+    const GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside, turn};
+    std::visit([&](auto& matcher) { matcher.match(gray, {disparity.d_q4, frame.confidence}, timer_, matched); }, *matcher_);
+  } else {
+    focused_.match(
+        prepared_, focus, turn,
+        [&](const MatchSetup& of_part, Matchers::Simd& out) {
+          pool_.use(pool_.most());  // it has memory for as many
+          Matchers::make(pool_, prepared_.matcher, of_part, out);
+          pool_.use(throttle_.threads());
+        },
+        timer_, frame);
+  }
   simd::mark_measured(pool_, disparity.d_q4, disparity.origin);
-  if (filling_) filling_->fill(pool_, frame.left, disparity);
-  keep_windows(windows, frame);
+  if (filling_ && whole) filling_->fill(pool_, frame.left, disparity);
+  if (whole) keep_windows(windows, frame);
   timer_.stage("fill");
   if (setup.wants.depth) simd::depth(pool_, disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
   timer_.stage("depth");

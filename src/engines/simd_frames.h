@@ -9,11 +9,13 @@
 #include "core/concurrency_throttle.h"
 #include "core/pool.h"
 #include "engines/filling.h"
+#include "engines/focused.h"
 #include "engines/prepared.h"
 
 namespace duo {
 
-/// Makes a frame of a pair with a pool of threads and scratch memory of its own; allocates nothing once it is there.
+/// Makes a frame of a pair with a pool of threads and scratch memory of its own; allocates nothing once it is
+/// there, but for a focus of a new size.
 ///
 /// Threads  one caller at a time; the pool's work for it
 class SimdFrames {
@@ -23,9 +25,9 @@ class SimdFrames {
   SimdFrames(const SimdFrames&) = delete;
   SimdFrames& operator=(const SimdFrames&) = delete;
 
-  /// `frame` comes from make_frame(). Windows: see Engine::look_at().
+  /// `frame` comes from make_frame(). Windows: see Engine::look_at(), focus: Engine::focus().
   /// `turn`: which pair of the stream, from 0.
-  void make(const Pair& pair, std::span<const Window> windows, std::uint64_t turn, Frame& frame);
+  void make(const Pair& pair, std::span<const Window> windows, const Focus& focus, std::uint64_t turn, Frame& frame);
 
  private:
   void prepare_view(const Picture& picture, const ResampleMap* map, Image<std::uint8_t>& out, Image<std::uint8_t>& inside);
@@ -35,6 +37,7 @@ class SimdFrames {
   Pool pool_;
   ConcurrencyThrottle throttle_;
   Matchers::Simd matcher_;
+  Focused<Matchers::Simd> focused_;
   std::optional<Filling> filling_;
   Image<std::uint8_t> now_, next_;  // one view on its way through the denoising
   StageTimer timer_;

@@ -21,9 +21,11 @@ std::size_t pairs_in_engine(const PairSource& source, int at_once) {
 
 }  // namespace
 
-FrameStream::FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int at_once, Choice choice, Passed passed)
+FrameStream::FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int at_once, Choice choice, Passed passed,
+                         FocusLine* focus)
     : source_(std::move(source)),
       engine_(engine),
+      focus_(focus),
       choice_(choice),
       pool_(pairs_in_engine(*source_, at_once) + kPairsOutside, [] { return Pair(); }),
       read_(passed.pairs),
@@ -35,6 +37,7 @@ FrameStream::FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int
 
 FrameStream::~FrameStream() {
   matcher_.ask_to_stop();
+  if (focus_ != nullptr) focus_->close();
   frames_.close();
   pairs_.close();
   matcher_ = {};
@@ -130,6 +133,7 @@ Result<Next> FrameStream::make_next(Matched& item) {
     }
     item.started_ns = wall_ns();
     align(item);
+    if (focus_ != nullptr) item.focus = focus_->next();
     const std::lock_guard lock(engine_mutex_);
     std::swap(in_flight(in_engine_++), item);
     submit(in_flight(in_engine_ - 1));
@@ -159,6 +163,7 @@ void FrameStream::submit(Matched& item) {
   item.setup = setup_;
   if (engine_ == nullptr) return;
   if (item.aligned) std::swap(item.pair->right.pixels, item.other_right);
+  if (focus_ != nullptr) engine_->focus(item.focus);
   engine_->submit(*item.pair);
 }
 

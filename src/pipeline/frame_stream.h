@@ -14,6 +14,7 @@
 #include "duoptic/engine.h"
 #include "duoptic/source.h"
 #include "duoptic/worker.h"
+#include "pipeline/focus_line.h"
 #include "stages/align_time/align_time.h"
 
 namespace duo {
@@ -27,6 +28,7 @@ struct Matched {
   bool aligned = false;     // the engine got another right picture, that of the left one's capture time:
   Image<Rgb8> other_right;  // it lies here, and while the engine works on the pair it is the one that came that lies here
   std::int64_t started_ns = 0;
+  Focus focus;    // of the engine, where the stream has a line of them
   int setup = 0;  // which of the stream's setups the frame was made with
 };
 
@@ -45,8 +47,10 @@ class FrameStream {
     std::shared_ptr<Pair> last = {};  // the one before the next, where there is one
   };
   /// The engine, which must be prepared and outlive this, gets `at_once` pairs at once, of a live source one. Null: the pairs
-  /// come without frames.
-  FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int at_once, Choice choice, Passed passed);
+  /// come without frames. `focus` says what of each pair the engine shall match, and may be null; it must outlive this, and is
+  /// closed at its end.
+  FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int at_once, Choice choice, Passed passed,
+              FocusLine* focus = nullptr);
   ~FrameStream();
   FrameStream(const FrameStream&) = delete;
   FrameStream& operator=(const FrameStream&) = delete;
@@ -88,6 +92,7 @@ class FrameStream {
 
   std::unique_ptr<PairSource> source_;
   Engine* const engine_;
+  FocusLine* const focus_;
   const Choice choice_;
   ObjectPool<Pair> pool_;
   ref::AlignTime align_;

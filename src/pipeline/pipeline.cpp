@@ -28,6 +28,7 @@ struct Pipeline::State {
   std::shared_ptr<Recording> recording = std::make_shared<Recording>();
   std::vector<NamedSink> sinks;
 
+  std::unique_ptr<FocusLine> focus;     // of frames, where the setup asks for it
   std::unique_ptr<PairSource> waiting;  // until the first next()
   std::unique_ptr<FrameStream> frames;  // after the engine, which it uses to its end
   Tap* tap = nullptr;                   // of frames
@@ -102,6 +103,14 @@ Result<void> Pipeline::State::prepare() {
 
 Result<void> Pipeline::State::prepare_tracker() {
   if (tracker == nullptr) return {};
+  if (setup.focus) {
+    const auto no = [](std::string why) {
+      return Error{ErrorCode::kUnsupported, fmt::format("cannot match around people alone: {}", why)};
+    };
+    if (!tracker->starts_by_itself()) return no(fmt::format("the tracker {} does not follow whole people", tracker->name()));
+    if (!engine->can_focus()) return no(fmt::format("the engine {} matches whole pictures; take simd", engine->name()));
+    if (setup.frames.fill) return no("to fill holes takes the whole picture; leave one of both out");
+  }
   // The engine makes the next frame on all threads meanwhile: a layer of a network that is shared by as many would wait for
   // them.
   const int threads = std::max(1, setup.threads / 2);
@@ -134,12 +143,16 @@ Result<FrameStream::Passed> Pipeline::State::pass_over() {
 Result<void> Pipeline::State::start() {
   if (frames) return {};
   DUO_CHECK(waiting != nullptr);
-  const int at_once = setup.frames.many_at_once && engine ? engine->in_flight() : 1;
+  int at_once = setup.frames.many_at_once && engine ? engine->in_flight() : 1;
+  if (setup.focus && tracker) {
+    at_once = std::min(at_once, FocusLine::kBehind - 1);  // the frame that the next pair depends on must have been tracked
+    focus = std::make_unique<FocusLine>(header.rectified, header.frame_s * static_cast<double>(setup.every), header.live);
+  }
   DUO_TRY_ASSIGN(FrameStream::Passed passed, pass_over());
   auto tapped = std::make_unique<Tap>(std::move(waiting), recording);
   tap = tapped.get();
   frames = std::make_unique<FrameStream>(std::move(tapped), engine.get(), at_once,
-                                         FrameStream::Choice{setup.first, setup.every}, std::move(passed));
+                                         FrameStream::Choice{setup.first, setup.every}, std::move(passed), focus.get());
   frames->start();
   return {};
 }
@@ -184,6 +197,7 @@ Result<Next> Pipeline::next() {
   if (s.tracker == nullptr) return next;
   const std::int64_t begin_ns = wall_ns();
   s.keep(s.tracker->track(*s.last.frame));
+  if (s.focus) s.focus->tell(s.people);
   s.tracker_ms = static_cast<double>(wall_ns() - begin_ns) * 1e-6;
   return next;
 }

@@ -1,0 +1,50 @@
+// Where the next pairs are matched: around the people of frames before.
+#pragma once
+
+#include <array>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <span>
+
+#include "duoptic/engine.h"
+#include "duoptic/person.h"
+#include "duoptic/rig.h"
+
+namespace duo {
+
+/// The box around people and the disparities that they may have `ahead_s` later: each joint where it is and where its velocity
+/// takes it, and 25 cm around both: half a body's
+/// depth, and what a hand that turns back gains in a tenth of a second. Empty, which is all, where nobody is.
+Focus around(std::span<const Person> people, const Rectified& rectified, double ahead_s);
+
+/// Of files, pair n is matched around the people of frame n - kBehind, whatever the threads; of a live source around those of
+/// the newest frame. Every kWholeEvery-th pair is matched as a whole: people who come in are found there.
+///
+/// Threads  one that tells, one that asks, and any that closes
+class FocusLine {
+ public:
+  static constexpr int kBehind = 3;  // as many pairs are on their way while a frame is tracked
+  static constexpr int kWholeEvery = 15;
+  FocusLine(const Rectified& rectified, double frame_s, bool live)
+      : rectified_(rectified), ahead_s_(kBehind * frame_s), live_(live) {}
+
+  /// The people of the next frame.
+  void tell(std::span<const Person> people);
+  /// For the next pair; waits for the frame that it depends on.
+  Focus next();
+  /// Lets next() return.
+  void close();
+
+ private:
+  const Rectified rectified_;
+  const double ahead_s_;
+  const bool live_;
+  std::mutex mutex_;  // of what follows
+  std::condition_variable news_;
+  std::array<Focus, kBehind + 1> ring_;
+  std::int64_t told_ = 0, asked_ = 0;
+  bool closed_ = false;
+};
+
+}  // namespace duo

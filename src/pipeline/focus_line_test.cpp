@@ -1,0 +1,82 @@
+#include "pipeline/focus_line.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "duoptic/skeleton.h"
+
+namespace duo {
+namespace {
+
+/// f = 500 px, 10 cm: 50 px of disparity at 1 m.
+Rectified plain_rig() {
+  Rectified out;
+  static_cast<Pinhole&>(out) = {500, 320, 240, 0.1};
+  out.size = {640, 480};
+  return out;
+}
+
+Person with_head_at(Vec3 p_m, Vec3 v_m_s = {}) {
+  Person person;
+  person.skeleton = &kBody;
+  person.joints[0] = {.p_in_rig_m = p_m, .v_in_rig_m_s = v_m_s, .state = JointState::kSeen};
+  return person;
+}
+
+TEST(FocusLine, TheBoxAroundAJointAndItsDisparities) {
+  // 2 m away, 25 cm around it: 1.75 .. 2.25 m; 500 * 0.25 / 1.75 = 71.43 px to each side.
+  const Person person = with_head_at({0, 0, 2});
+  const Focus focus = around({&person, 1}, plain_rig(), 0.1);
+  EXPECT_EQ(focus.window, (Window{248, 168, 392 - 248, 312 - 168}));
+  EXPECT_EQ(focus.disparity_begin, 22);  // 50 / 2.25 = 22.2
+  EXPECT_EQ(focus.disparity_end, 30);    // 50 / 1.75 = 28.6
+}
+
+TEST(FocusLine, GoesWhereTheJointWillBe) {
+  const Person person = with_head_at({0, 0, 2}, {2, 0, 0});  // in 0.1 s 50 px to the right
+  const Focus focus = around({&person, 1}, plain_rig(), 0.1);
+  EXPECT_EQ(focus.window, (Window{248, 168, 442 - 248, 312 - 168}));
+}
+
+TEST(FocusLine, NobodyIsAllOfThePicture) {
+  EXPECT_TRUE(around({}, plain_rig(), 0.1).window.empty());
+  const Person beside = with_head_at({10, 0, 2});
+  EXPECT_TRUE(around({&beside, 1}, plain_rig(), 0.1).window.empty());
+  Person lost = with_head_at({0, 0, 2});
+  lost.joints[0].state = JointState::kLost;
+  EXPECT_TRUE(around({&lost, 1}, plain_rig(), 0.1).window.empty());
+}
+
+TEST(FocusLine, OfFilesThePairsWaitForTheFrameTheyDependOn) {
+  FocusLine line(plain_rig(), 1.0 / 30, false);
+  const Person near = with_head_at({0, 0, 1}), far = with_head_at({0, 0, 2});
+  for (int n = 0; n < FocusLine::kBehind; ++n) EXPECT_TRUE(line.next().window.empty());
+  line.tell({&near, 1});
+  std::thread teller([&] { line.tell({&far, 1}); });
+  EXPECT_EQ(line.next(), around({&near, 1}, plain_rig(), FocusLine::kBehind / 30.0));
+  EXPECT_EQ(line.next(), around({&far, 1}, plain_rig(), FocusLine::kBehind / 30.0));
+  teller.join();
+  for (int n = FocusLine::kBehind + 2; n < FocusLine::kWholeEvery; ++n) {
+    line.tell({&far, 1});
+    EXPECT_FALSE(line.next().window.empty());
+  }
+  line.tell({&far, 1});
+  EXPECT_TRUE(line.next().window.empty());  // every 15th
+  line.close();
+  EXPECT_TRUE(line.next().window.empty());  // would wait
+}
+
+TEST(FocusLine, LiveTheNewestFrameCountsAndNobodyWaits) {
+  FocusLine line(plain_rig(), 1.0 / 30, true);
+  EXPECT_TRUE(line.next().window.empty());
+  EXPECT_TRUE(line.next().window.empty());
+  const Person person = with_head_at({0, 0, 2});
+  line.tell({});
+  line.tell({&person, 1});
+  EXPECT_EQ(line.next(), around({&person, 1}, plain_rig(), FocusLine::kBehind / 30.0));
+  EXPECT_EQ(line.next(), around({&person, 1}, plain_rig(), FocusLine::kBehind / 30.0));
+}
+
+}  // namespace
+}  // namespace duo

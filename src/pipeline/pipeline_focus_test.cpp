@@ -1,0 +1,77 @@
+// Frames that are matched around the people of frames before, through the whole pipeline.
+#include <gtest/gtest.h>
+
+#include "tests/agree.h"
+#include "tests/waving_clip.h"
+
+namespace duo {
+namespace {
+
+using test::Clip, test::frames_of, test::pipeline_setup;
+
+/// Somebody 0.7 m away who moves to the right.
+class Walker final : public Tracker {
+ public:
+  const char* name() const override { return "walker"; }
+  std::span<const Skeleton* const> skeletons() const override { return skeletons_; }
+  bool starts_by_itself() const override { return true; }
+  Wants wants() const override { return {}; }
+  Result<void> prepare(const TrackerSetup&) override { return {}; }
+  Result<std::span<const Person>> select(const Frame&, std::span<const Selection>) override { return track({}); }
+  std::span<const Person> track(const Frame& frame) override {
+    person_.id = 1;
+    person_.skeleton = &kBody;
+    person_.joints[0].state = JointState::kSeen;
+    person_.joints[0].p_in_rig_m = {-0.1 + 0.01 * static_cast<double>(frame.sequence), 0, 0.7};
+    return {&person_, 1};
+  }
+  void reset() override {}
+
+ private:
+  const Skeleton* skeletons_[1] = {&kBody};
+  Person person_;
+};
+
+// Which frames are matched around whom does not depend on who makes how many at once.
+TEST(PipelineFocus, FollowsPeople) {
+  const auto frames = [](int threads, bool focus) {
+    PipelineSetup setup = pipeline_setup(threads, true);
+    setup.focus = focus;
+    auto pipeline = Pipeline::open(std::make_unique<Clip>(), std::move(setup), std::make_unique<Walker>());
+    EXPECT_TRUE(pipeline) << pipeline.error().what;
+    return frames_of(*pipeline);
+  };
+  const auto known = [](const Frame& frame) {
+    int out = 0;
+    for (int y = 0; y < frame.disparity.d_q4.height(); ++y)
+      for (int x = 0; x < frame.disparity.d_q4.width(); ++x) out += frame.disparity.d_q4.at(y, x) != Disparity::kNone;
+    return out;
+  };
+  const auto whole = frames(1, false), one = frames(1, true), three = frames(3, true);
+  ASSERT_EQ(one.size(), whole.size());
+  ASSERT_EQ(three.size(), whole.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    if (i < 3)
+      EXPECT_EQ(known(*one[i]), known(*whole[i])) << i;
+    else
+      EXPECT_LT(known(*one[i]), known(*whole[i])) << i;
+    EXPECT_GT(known(*one[i]), 0) << i;
+    test::expect_same<std::uint16_t>(one[i]->disparity.d_q4, three[i]->disparity.d_q4, std::to_string(i));
+  }
+}
+
+TEST(PipelineFocus, RefusesWhatNeedsWholeFrames) {
+  PipelineSetup setup = pipeline_setup();
+  setup.focus = true;
+  setup.tracker = "arm";
+  const auto arm = Pipeline::open(std::make_unique<Clip>(), setup);
+  ASSERT_FALSE(arm);
+  EXPECT_NE(arm.error().what.find("the tracker arm does not follow whole people"), std::string::npos) << arm.error().what;
+  setup.frames.fill = true;
+  const auto filled = Pipeline::open(std::make_unique<Clip>(), setup, std::make_unique<Walker>());
+  ASSERT_FALSE(filled);
+  EXPECT_NE(filled.error().what.find("fill holes"), std::string::npos) << filled.error().what;
+}
+
+}  // namespace
+}  // namespace duo
