@@ -10,16 +10,6 @@ namespace {
 
 constexpr float kTitle = 28, kCaption = 34, kMargin = 8;  // heights above and below a picture, and around it
 
-/// As wide as 12-bit colours need, a pixel high.
-Image<Rgb8> turbo_strip() {
-  constexpr int kSteps = 256;
-  Image<std::uint16_t> ramp({kSteps, 1});
-  for (int x = 0; x < kSteps; ++x) ramp.at(0, x) = static_cast<std::uint16_t>(x * 16);
-  Image<Rgb8> out(ramp.size());
-  color_disparity(ramp, {0, kSteps - 1.0}, out);
-  return out;
-}
-
 /// The hues as draw_hue() shows them, from pixels that have them.
 Image<Rgb8> hue_strip() {
   constexpr int kSteps = 6 * 32;
@@ -42,11 +32,8 @@ ImVec2 inset(ImVec2 p, float d) { return {p.x + d, p.y + d}; }
 Panels::Panels(const TrackHeader& header, float scale) : header_(header), scale_(scale) {}
 
 Result<void> Panels::show(std::shared_ptr<const Shown> shown) {
-  if (shown == shown_) return {};
-  if (shows_ == 0) {
-    DUO_TRY(turbo_strip_.set(turbo_strip()));
-    DUO_TRY(hue_strip_.set(hue_strip()));
-  }
+  if (shown == shown_) return paint_depth();
+  if (shows_ == 0) DUO_TRY(hue_strip_.set(hue_strip()));
   const Frame& frame = *shown->frame;
   const auto& d_q4 = frame.disparity.d_q4;
   // Colours that mean the same from frame to frame: the range follows slowly, with room for an arm stretched out to the
@@ -63,35 +50,71 @@ Result<void> Panels::show(std::shared_ptr<const Shown> shown) {
   if (orbit_.middle_m <= 0 || shows_ == 1) orbit_.middle_m = std::max(0.3, foreground_m(d_q4, header_.rectified));
   DUO_TRY(camera_.set(shown->left->pixels));
   if (painted_.size() != d_q4.size()) painted_ = Image<Rgb8>(d_q4.size());
-  color_disparity(d_q4, range_, painted_);
-  DUO_TRY(depth_.set(painted_));
   draw_regions(frame, header_.rectified, shown->people, painted_);
   DUO_TRY(region_.set(painted_));
   draw_hue(frame.color, painted_);
   DUO_TRY(hue_.set(painted_));
+  quality_.add(frame);
   shown_ = std::move(shown);
-  cloud_stale_ = true;
-  return {};
+  cloud_stale_ = depth_stale_ = pair_stale_ = true;
+  return paint_depth();
 }
 
-Result<std::optional<ClickAt>> Panels::draw(ImVec2 from, ImVec2 to, const Clicks& clicks) {
+/// Two in a row above, three below; one that is enlarged has all the room.
+std::array<Panels::Box, Panels::kPanels> Panels::boxes(ImVec2 from, ImVec2 to) const {
+  std::array<Box, kPanels> out;
+  if (enlarged_) {
+    out.fill({from, from});
+    out[static_cast<std::size_t>(*enlarged_)] = {from, to};
+    return out;
+  }
   const float gap = 8 * scale_, half = (to.x - from.x - gap) / 2, third = (to.x - from.x - 2 * gap) / 3;
   // The upper row is as high as its pictures need, but leaves something to the lower one.
   const float high =
       (half - 2 * kMargin * scale_) * static_cast<float>(header_.size.height) / static_cast<float>(header_.size.width);
   const float middle_y = from.y + std::min(high + (kTitle + kCaption) * scale_, 0.62f * (to.y - from.y));
-  const auto top = [&](int i) { return ImVec2(from.x + static_cast<float>(i) * (half + gap), from.y); };
-  const auto bottom = [&](int i) { return ImVec2(from.x + static_cast<float>(i) * (third + gap), middle_y + gap); };
+  for (std::size_t i = 0; i < 2; ++i) {
+    const float x = from.x + static_cast<float>(i) * (half + gap);
+    out[i] = {{x, from.y}, {x + half, middle_y}};
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float x = from.x + static_cast<float>(i) * (third + gap);
+    out[2 + i] = {{x, middle_y + gap}, {x + third, to.y}};
+  }
+  return out;
+}
+
+/// It enlarges a panel, or shows all again; not where clicks on the camera's picture are asked for.
+void Panels::take_double_click(const std::array<Box, kPanels>& boxes, const Clicks& clicks) {
+  if (!ImGui::IsWindowHovered() || !ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) return;
+  for (int i = 0; i < kPanels; ++i) {
+    const Box& box = boxes[static_cast<std::size_t>(i)];
+    if (box.from.x == box.to.x || !ImGui::IsMouseHoveringRect(box.from, box.to) || (i == kCamera && clicks.wanted())) continue;
+    enlarged_ = enlarged_ ? std::nullopt : std::optional(i);
+    return;
+  }
+}
+
+Result<std::optional<ClickAt>> Panels::draw(ImVec2 from, ImVec2 to, const Clicks& clicks) {
+  if (clicks.wanted() && enlarged_ && *enlarged_ != kCamera) enlarged_.reset();  // the camera's picture must be seen
+  const auto box = boxes(from, to);
+  const auto seen = [&](int panel) { return !enlarged_ || *enlarged_ == panel; };
   const std::string when = shown_ ? fmt::format("frame {}   {:.2f} s", shown_->number, shown_->t_s) : "";
-  const auto click = draw_camera(cell(top(0), {from.x + half, middle_y}, "Left camera", when), clicks);
-  draw_depth(cell(top(1), {to.x, middle_y}, "Depth", "metres"));
-  DUO_TRY(draw_cloud_panel(cell(bottom(0), {bottom(0).x + third, to.y}, "Points", "drag, wheel, double click")));
-  draw_region(cell(bottom(1), {bottom(1).x + third, to.y}, "Body", "by nearest joint"));
-  draw_hue_panel(cell(bottom(2), {to.x, to.y}, "Hue and saturation", "degrees; brightness = saturation"));
+  std::optional<ClickAt> click;
+  if (seen(kCamera)) click = draw_camera(cell(box[kCamera], "Left camera", when), clicks);
+  if (seen(kDepth)) draw_depth(cell(box[kDepth], "Depth", "metres; drag: quality"));
+  if (seen(kPoints)) DUO_TRY(draw_cloud_panel(cell(box[kPoints], "Points", "drag, wheel, right click")));
+  if (seen(kBody)) draw_region(cell(box[kBody], "Body", "by nearest joint"));
+  if (seen(kLast) && choices_.rectified_pair)
+    DUO_TRY(draw_rectified_pair(cell(box[kLast], "Rectified pair", "same rows")));
+  else if (seen(kLast))
+    draw_hue_panel(cell(box[kLast], "Hue and saturation", "degrees; brightness = saturation"));
+  take_double_click(box, clicks);
   return click;
 }
 
-Panels::Cell Panels::cell(ImVec2 from, ImVec2 to, const char* title, const std::string& note) const {
+Panels::Cell Panels::cell(const Box& box, const char* title, const std::string& note) const {
+  const auto& [from, to] = box;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float title_height = kTitle * scale_, caption_height = kCaption * scale_, margin = kMargin * scale_;
   list.AddRectFilled(from, to, kPanel, 6 * scale_);
@@ -202,52 +225,6 @@ void Panels::put_joints(const Cell& cell) const {
   }
 }
 
-void Panels::draw_depth(const Cell& cell) {
-  if (!shown_) return;
-  const Fit fit = picture(cell, depth_);
-  put_depth_legend(cell);
-  if (!ImGui::IsWindowHovered() || !ImGui::IsMouseHoveringRect(fit.from, fit.to)) return;
-  const ImVec2 mouse = ImGui::GetMousePos();
-  const auto& d_q4 = shown_->frame->disparity.d_q4;
-  const int x = std::clamp(static_cast<int>((mouse.x - fit.from.x) / fit.scale), 0, d_q4.width() - 1);
-  const int y = std::clamp(static_cast<int>((mouse.y - fit.from.y) / fit.scale), 0, d_q4.height() - 1);
-  const std::uint16_t d = d_q4.at(y, x);
-  std::string text = "no depth";
-  if (d != Disparity::kNone && d != 0) {
-    const Vec3 p_m = header_.rectified.triangulate({static_cast<double>(x), static_cast<double>(y)}, d / 16.0);
-    text = fmt::format("{:.2f}{}   x {:+.2f}  y {:+.2f}", p_m.z, header_.metric ? " m" : "", p_m.x, p_m.y);
-  }
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddCircle(mouse, 5 * scale_, kText, 0, 1.5f * scale_);
-  const float width = ImGui::CalcTextSize(text.c_str()).x + 20 * scale_;
-  text_on_picture(list, {mouse.x + width > fit.to.x ? mouse.x - width : mouse.x + 14 * scale_, mouse.y + 10 * scale_}, kText,
-                  text.c_str());
-}
-
-/// The colours with round metres below them: what fits first, in the order of importance, stays.
-void Panels::put_depth_legend(const Cell& cell) {
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 to = {cell.caption.x + cell.caption_width, cell.caption.y + 10 * scale_};
-  if (range_.empty()) return list.AddText(cell.caption, kFaint, "no depth");
-  turbo_strip_.draw(list, cell.caption, to);
-  std::vector<std::pair<float, float>> taken;
-  for (const double z_m :
-       {1.0, 2.0, 0.5, 5.0, 3.0, 1.5, 10.0, 0.7, 4.0, 2.5, 0.3, 0.4, 0.6, 0.8, 1.2, 7.0, 0.9, 6.0, 3.5, 1.4, 1.8, 20.0}) {
-    const double share = (header_.rectified.disparity_px(z_m) - range_.far_px) / (range_.near_px - range_.far_px);
-    if (share < 0 || share > 1) continue;
-    const std::string text = fmt::format("{:g}{}", z_m, header_.metric ? " m" : "");
-    const float x = cell.caption.x + static_cast<float>(share) * cell.caption_width,
-                half = ImGui::CalcTextSize(text.c_str()).x / 2;
-    const float left = x - half - 6 * scale_, right = x + half + 6 * scale_;
-    if (left < cell.caption.x - 6 * scale_ || right > to.x + 6 * scale_ ||
-        std::any_of(taken.begin(), taken.end(), [&](const auto& other) { return left < other.second && other.first < right; }))
-      continue;
-    taken.emplace_back(left, right);
-    list.AddLine({x, to.y}, {x, to.y + 3 * scale_}, kFaint);
-    list.AddText({x - half, to.y + 3 * scale_}, kText, text.c_str());
-  }
-}
-
 void Panels::turn_cloud(const Cell& cell) {
   constexpr double kRadiansPerPixel = 0.008, kMost_rad = 1.5;
   ImGui::SetCursorScreenPos(cell.from);
@@ -259,7 +236,7 @@ void Panels::turn_cloud(const Cell& cell) {
   }
   if (!ImGui::IsItemHovered()) return;
   orbit_.zoom = std::clamp(orbit_.zoom * std::pow(1.15, io.MouseWheel), 0.3, 6.0);
-  if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
+  if (ImGui::IsMouseClicked(ImGuiMouseButton_Right))
     orbit_ = {.middle_m = std::max(0.3, foreground_m(shown_->frame->disparity.d_q4, header_.rectified))};
 }
 

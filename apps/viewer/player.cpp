@@ -28,9 +28,8 @@ double now_ms() { return clock_ms(CLOCK_MONOTONIC); }
 
 }  // namespace
 
-Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options, const CLI::App& app) {
+Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options, Input input, const CLI::App& app) {
   std::unique_ptr<Player> player(new Player(options, app));
-  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, options.rig, options.input));
   TrackingOptions tracking = options.tracking.or_tracker("body");
   tracking.all_maps = true;
   DUO_TRY_ASSIGN(PipelineSetup setup, tracking.setup(input));
@@ -84,6 +83,20 @@ void Player::restart() {
     const std::lock_guard lock(mutex_);
     status_.state = PlayState::kPlaying;
   });
+}
+
+void Player::seek(std::int64_t number) {
+  post([this, number] {
+    if (live() || still_ || failed_ || !reopen(number)) return;
+    step_ = true;
+    next_ms_ = last_ms_ = 0;
+    const std::lock_guard lock(mutex_);
+    if (status_.state == PlayState::kEnded) status_.state = PlayState::kPaused;
+  });
+}
+
+void Player::set_speed(double factor) {
+  post([this, factor] { speed_ = factor; });
 }
 
 void Player::loop(bool on) {
@@ -259,7 +272,8 @@ void Player::advance() {
   const double interval = last_ms_ > 0 ? now - last_ms_ : 0;
   last_ms_ = now;
   // Late frames shift all that follow: none is left out, and none is hurried.
-  next_ms_ = std::max(next_ms_, now - 1000 * header().frame_s) + 1000 * header().frame_s;
+  const double frame_ms = 1000 * header().frame_s / speed_;
+  next_ms_ = std::max(next_ms_, now - frame_ms) + frame_ms;
 
   const TrackedFrame frame = pipeline_->tracked();
   if (!live() && selected_ && selected_->first == frame.number) static_cast<void>(pipeline_->select(selected_->second));
@@ -289,13 +303,13 @@ void Player::at_end(Next end) {
   reopen();
 }
 
-/// From the first pair again. What was selected is selected again when its frame comes.
-bool Player::reopen() {
+/// From the first pair again, or another. What was selected is selected again when its frame comes.
+bool Player::reopen(std::int64_t first) {
   pipeline_->stop_recording();
   pipeline_->close_source();  // before another: a file may be a device
-  const auto restart = [this]() -> Result<void> {
+  const auto restart = [this, first]() -> Result<void> {
     DUO_TRY_ASSIGN(Input input, open_input(options_.left, options_.right, options_.rig, options_.input));
-    return pipeline_->restart(std::move(input.pairs));
+    return pipeline_->restart(std::move(input.pairs), first);
   };
   const Result<void> restarted = restart();
   if (!restarted) fail(restarted.error(), true);

@@ -72,8 +72,10 @@ struct PlayerStatus {
 /// Threads  any; what is asked for happens between two frames
 class Player {
  public:
-  /// Errors  those of open_input(), Pipeline::open() and of the outputs
-  static Result<std::unique_ptr<Player>> open(const PlayerOptions& options, const CLI::App& app);
+  /// `input`: what the options name.
+  ///
+  /// Errors  those of Pipeline::open() and of the outputs
+  static Result<std::unique_ptr<Player>> open(const PlayerOptions& options, Input input, const CLI::App& app);
   ~Player();
 
   const TrackHeader& header() const { return pipeline_->header(); }
@@ -90,6 +92,10 @@ class Player {
   void play(bool on);
   void step();
   void restart();
+  /// Of files: frame `number`, then as before, playing or paused.
+  void seek(std::int64_t number);
+  /// Of files: how many times their own rate they play at, at most.
+  void set_speed(double factor);
   void loop(bool on);
   /// Tracks from the clicks on the frame shown last; at their frame of a file again each time that it comes by.
   void select(const std::vector<Selection>& selections);
@@ -116,7 +122,7 @@ class Player {
   std::optional<double> due_in_ms() const;
   void advance();
   void at_end(Next end);
-  bool reopen();
+  bool reopen(std::int64_t first = 0);
   void show(double interval_ms);
   void write();
   void fail(const Error& error, bool for_good);
@@ -132,6 +138,7 @@ class Player {
   // The thread's own.
   std::optional<std::pair<std::int64_t, std::vector<Selection>>> selected_;  // at which frame
   bool step_ = false;
+  double speed_ = 1;
   double next_ms_ = 0, last_ms_ = 0;  // when the next frame is due and when the last came, CLOCK_MONOTONIC
   SkewWatch skew_{1};
   std::string passing_words_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "style.h"
 #include "timing.h"
@@ -18,21 +19,6 @@ void title(const char* text) {
   ImGui::PushFont(title_font());
   ImGui::TextUnformatted(text);
   ImGui::PopFont();
-}
-
-void colored(ImU32 color, const std::string& text) {
-  ImGui::PushStyleColor(ImGuiCol_Text, color);
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::PopStyleColor();
-}
-
-/// A name and what it is.
-void fact(const char* name, const std::string& text) {
-  ImGui::TextDisabled("%s", name);
-  ImGui::SameLine(ImGui::GetFontSize() * 7.5f);
-  colored(kText, text);
 }
 
 ImU32 color_of_verdict(RigVerdict verdict) {
@@ -70,19 +56,20 @@ void Sidebar::add(const Shown& shown) {
   if (speeds_.size() > kPlotted) speeds_.pop_front();
 }
 
-bool Sidebar::draw(Player& player, Clicks& clicks, const Shown* shown, const std::string& note) {
+bool Sidebar::draw(Player& player, Clicks& clicks, ViewChoices& choices, const Shown* shown, const std::string& note) {
   const PlayerStatus status = player.status();
   put_clicks(player, clicks, shown, status);
   put_playback(player, shown, status);
   put_recording(player, status);
   put_outputs(player, status);
+  put_choices(choices);
   put_joints(shown);
   put_speed();
   put_source(player, status);
   put_parameters(player);
   ImGui::Dummy({0, 4});
   const bool wanted = ImGui::Button("Screenshot", {-1, 0});
-  if (!note.empty()) colored(kFaint, note);
+  if (!note.empty()) put_text(kFaint, note);
   return wanted;
 }
 
@@ -91,23 +78,23 @@ void Sidebar::put_clicks(Player& player, Clicks& clicks, const Shown* shown, con
   if (!player.asks_for_clicks()) {
     const std::size_t people = tracking ? shown->people.size() : 0;
     ImGui::PushFont(title_font());
-    colored(tracking ? kBox : kFaint, people == 0   ? "Looking for people"
-                                      : people == 1 ? "1 person"
-                                                    : fmt::format("{} people", people));
+    put_text(tracking ? kBox : kFaint, people == 0   ? "Looking for people"
+                                       : people == 1 ? "1 person"
+                                                     : fmt::format("{} people", people));
     ImGui::PopFont();
-    if (!status.problem.empty()) colored(kBad, status.problem);
+    if (!status.problem.empty()) put_text(kBad, status.problem);
     if (ImGui::Button("Look again", {-1, 0})) player.forget_people();
     return;
   }
   ImGui::PushFont(title_font());
-  colored(clicks.wanted() ? kAccent
-          : tracking      ? kBox
-                          : kFaint,
-          clicks.wanted() ? clicks.prompt()
-          : tracking      ? "Tracking"
-                          : "Nobody is selected");
+  put_text(clicks.wanted() ? kAccent
+           : tracking      ? kBox
+                           : kFaint,
+           clicks.wanted() ? clicks.prompt()
+           : tracking      ? "Tracking"
+                           : "Nobody is selected");
   ImGui::PopFont();
-  if (!status.problem.empty()) colored(kBad, status.problem);
+  if (!status.problem.empty()) put_text(kBad, status.problem);
   for (std::size_t i = 0; i < clicks.choices().size(); ++i) {
     if (i > 0) ImGui::SameLine();
     if (ImGui::RadioButton(clicks.choices()[i].c_str(), clicks.choice() == i)) clicks.start(i);
@@ -141,27 +128,79 @@ void Sidebar::put_playback(Player& player, const Shown* shown, const PlayerStatu
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled(
         "%s", fmt::format("{} dropped, skew {:.1f} ms", status.dropped, shown != nullptr ? shown->skew_ms : 0).c_str());
-    if (status.silent) colored(kBad, "no pictures come: is a camera unplugged?");
-    if (!status.event.empty()) colored(kWarn, status.event);
+    if (status.silent) put_text(kBad, "no pictures come: is a camera unplugged?");
+    if (!status.event.empty()) put_text(kWarn, status.event);
     return;
   }
   ImGui::SameLine();
-  if (ImGui::Button("Step", {third, 0}) && !ended) {
+  const float sixth = (third - ImGui::GetStyle().ItemSpacing.x) / 2;
+  const bool can_seek = !player.still() && shown != nullptr;
+  if (ImGui::Button("<", {sixth, 0}) && can_seek) {
+    player.play(false);
+    player.seek(std::max<std::int64_t>(0, shown->number - 1));
+  }
+  ImGui::SameLine();
+  if (ImGui::Button(">", {sixth, 0}) && !ended) {
     player.play(false);
     player.step();
   }
   ImGui::SameLine();
   if (bool loop = status.loop; ImGui::Checkbox("Loop", &loop)) player.loop(loop);
-  const std::int64_t frame = shown != nullptr ? shown->number + 1 : 0;
-  const float share = player.count() > 0 ? static_cast<float>(frame) / static_cast<float>(player.count()) : 0.0f;
-  ImGui::PushStyleColor(ImGuiCol_PlotHistogram, kAccent);
-  ImGui::ProgressBar(share, {-1, 4 * scale_}, "");
-  ImGui::PopStyleColor();
-  ImGui::TextDisabled("%s", fmt::format("frame {}{}{}", frame, player.count() > 0 ? fmt::format(" of {}", player.count()) : "",
-                                        ended     ? ", the end"
-                                        : playing ? ""
-                                                  : ", paused")
-                                .c_str());
+  put_seek_bar(player, shown, status);
+}
+
+/// Where a file is played, and how fast. Its frames are numbered from 0, as in all outputs.
+void Sidebar::put_seek_bar(Player& player, const Shown* shown, const PlayerStatus& status) {
+  constexpr std::pair<const char*, double> kSpeeds[] = {{"1/4x", 0.25}, {"1/2x", 0.5}, {"1x", 1}, {"2x", 2}, {"4x", 4}};
+  const int now = shown != nullptr ? static_cast<int>(shown->number) : 0, last = static_cast<int>(player.count()) - 1;
+  const float beside = 76 * scale_;
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - beside - ImGui::GetStyle().ItemSpacing.x);
+  const char* const state = status.state == PlayState::kEnded    ? ", the end"
+                            : status.state == PlayState::kPaused ? ", paused"
+                                                                 : "";
+  const std::string format = last > 0 ? fmt::format("%d of {}{}", last, state) : fmt::format("%d{}", state);
+  int at = seek_to_ >= 0 ? seek_to_ : now;
+  if (ImGui::SliderInt("##seek", &at, 0, std::max(last, now), format.c_str(), ImGuiSliderFlags_AlwaysClamp)) seek_to_ = at;
+  if (ImGui::IsItemDeactivatedAfterEdit() && !player.still() && last > 0) player.seek(seek_to_);
+  if (!ImGui::IsItemActive()) seek_to_ = -1;
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(beside);
+  if (!ImGui::BeginCombo("##speed", kSpeeds[speed_].first)) return;
+  for (int i = 0; i < static_cast<int>(std::size(kSpeeds)); ++i)
+    if (ImGui::Selectable(kSpeeds[i].first, i == speed_)) {
+      speed_ = i;
+      player.set_speed(kSpeeds[i].second);
+    }
+  ImGui::EndCombo();
+}
+
+/// How depth is coloured, which wall is measured, and what the last panel shows.
+void Sidebar::put_choices(ViewChoices& choices) const {
+  if (!ImGui::CollapsingHeader("Pictures")) return;
+  const float label = 110 * scale_;
+  const auto line = [&](const char* name) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", name);
+    ImGui::SameLine(label);
+    ImGui::SetNextItemWidth(-1);
+  };
+  int colors = static_cast<int>(choices.colors);
+  line("colours");
+  if (ImGui::Combo("##colours", &colors, "Turbo\0Cividis\0gray\0")) choices.colors = static_cast<DepthColors>(colors);
+  line("range");
+  if (int own = choices.own_range ? 1 : 0; ImGui::Combo("##range", &own, "of the scene\0chosen\0"))
+    choices.own_range = own != 0;
+  if (choices.own_range) {
+    line("from, to");
+    ImGui::DragFloatRange2("##from", &choices.near_m, &choices.far_m, 0.02f, 0.1f, 50, "%.2f m", "%.2f m",
+                           ImGuiSliderFlags_AlwaysClamp);
+    choices.far_m = std::max(choices.far_m, choices.near_m + 0.05f);
+  }
+  line("last panel");
+  if (int pair = choices.rectified_pair ? 1 : 0; ImGui::Combo("##last", &pair, "hue\0rectified pair\0"))
+    choices.rectified_pair = pair != 0;
+  line("wall, true");
+  ImGui::InputFloat("##wall", &choices.wall_m, 0, 0, choices.wall_m > 0 ? "%.3f m" : "not known");
 }
 
 /// A button, and beside it a red dot and how long it has been on.
@@ -185,9 +224,9 @@ void Sidebar::put_recording(Player& player, const PlayerStatus& status) const {
     ImGui::TextUnformatted(amount.c_str());
   }
   if (!now.problem.empty())
-    colored(kBad, now.problem);
+    put_text(kBad, now.problem);
   else if (!now.name.empty())
-    colored(kFaint, now.on ? "into " + now.name : now.pairs > 0 ? now.name + ": " + amount : "nothing recorded: no pair came");
+    put_text(kFaint, now.on ? "into " + now.name : now.pairs > 0 ? now.name + ": " + amount : "nothing recorded: no pair came");
 }
 
 /// A box per kind of output; beside it where the tracked frames go and how many went there.
@@ -208,7 +247,7 @@ void Sidebar::put_outputs(Player& player, const PlayerStatus& status) {
       ImGui::SetNextItemWidth(-1);
       ImGui::InputText("##target", targets_[i].data(), kTarget);
     }
-    if (!output.name.empty()) colored(kFaint, fmt::format("{}: {} frames", output.name, output.frames));
+    if (!output.name.empty()) put_text(kFaint, fmt::format("{}: {} frames", output.name, output.frames));
     ImGui::PopID();
   }
 }
@@ -225,7 +264,7 @@ void Sidebar::put_joints(const Shown* shown) const {
     if (shown->people.size() > 1) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
-      colored(kFaint, fmt::format("person {}", person.id));
+      put_text(kFaint, fmt::format("person {}", person.id));
     }
     for (std::size_t j = 0; j < person.count(); ++j) {
       const Joint& k = person.joints[j];
@@ -283,9 +322,9 @@ void Sidebar::put_speed() const {
   list.AddText({from.x + 5 * scale_, y_of(kCameraFrame_ms) - 17 * scale_}, kFaint, "33 ms");
   const double ms = median(interval);
   ImGui::TextUnformatted(fmt::format("{:.1f} frames/s, {:.0f} ms latency", ms > 0 ? 1000 / ms : 0, median(latency)).c_str());
-  colored(kEngine, fmt::format("engine {:.1f} ms", median(engine)));
+  put_text(kEngine, fmt::format("engine {:.1f} ms", median(engine)));
   ImGui::SameLine();
-  colored(kTracker, fmt::format("tracker {:.1f} ms", median(tracker)));
+  put_text(kTracker, fmt::format("tracker {:.1f} ms", median(tracker)));
 }
 
 void Sidebar::put_parameters(Player& player) {
@@ -302,10 +341,17 @@ void Sidebar::put_parameters(Player& player) {
     bool hovered = ImGui::IsItemHovered();
     ImGui::SameLine(128 * scale_);
     ImGui::SetNextItemWidth(-1);
-    ImGui::SliderInt(("##" + info.name).c_str(), &values_[i], static_cast<int>(info.min), static_cast<int>(info.max),
-                     format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+    const std::string id = "##" + info.name;
+    if (info.min == 0 && info.max == 1) {
+      bool on = values_[i] != 0;
+      changed = ImGui::Checkbox(id.c_str(), &on) || changed;
+      values_[i] = on ? 1 : 0;
+    } else {
+      ImGui::SliderInt(id.c_str(), &values_[i], static_cast<int>(info.min), static_cast<int>(info.max), format.c_str(),
+                       ImGuiSliderFlags_AlwaysClamp);
+      changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+    }
     hovered = ImGui::IsItemHovered() || hovered;
-    changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
     if (hovered) ImGui::SetTooltip("%s", info.help.c_str());
   }
   ImGui::PopStyleVar(2);
@@ -324,26 +370,26 @@ void Sidebar::put_source(Player& player, const PlayerStatus& status) const {
   if (!ImGui::CollapsingHeader("Source and rig", ImGuiTreeNodeFlags_DefaultOpen)) return;
   const TrackHeader& header = player.header();
   const Rig& rig = player.rig();
-  colored(kText, source_);
-  fact("pictures", fmt::format("{}x{}, {:.0f} a second, {}", header.size.width, header.size.height, 1 / header.frame_s,
-                               player.live() ? "live" : "from files"));
-  fact("focal lengths", fmt::format("{:.1f} and {:.1f} px", rig.left.fx_px, rig.right.fx_px));
-  fact("baseline", rig.metric ? fmt::format("{:.1f} mm", 1000 * rig.baseline_m()) : "a guess: not metric");
-  fact("engine", header.engine);
-  fact("window", device_);
-  for (const RigDoubt& doubt : doubts_) colored(color_of_verdict(doubt.verdict), doubt.what);
-  if (!status.rig_news.empty()) colored(kBad, status.rig_news);
+  put_text(kText, source_);
+  put_fact("pictures", fmt::format("{}x{}, {:.0f} a second, {}", header.size.width, header.size.height, 1 / header.frame_s,
+                                   player.live() ? "live" : "from files"));
+  put_fact("focal lengths", fmt::format("{:.1f} and {:.1f} px", rig.left.fx_px, rig.right.fx_px));
+  put_fact("baseline", rig.metric ? fmt::format("{:.1f} mm", 1000 * rig.baseline_m()) : "a guess: not metric");
+  put_fact("engine", header.engine);
+  put_fact("window", device_);
+  for (const RigDoubt& doubt : doubts_) put_text(color_of_verdict(doubt.verdict), doubt.what);
+  if (!status.rig_news.empty()) put_text(kBad, status.rig_news);
   if (status.checking_rig)
     ImGui::TextDisabled("looking at the pictures ...");
   else if (ImGui::Button("Does the rig fit this scene?", {-1, 0}))
     player.check_rig();
   if (!status.health) return;
-  if (!*status.health) return colored(kBad, status.health->error().what);
+  if (!*status.health) return put_text(kBad, status.health->error().what);
   const SceneHealth& health = **status.health;
-  colored(color_of_verdict(health.verdict), fmt::format("By this scene: {}", name_of(health.verdict)));
-  fact("rows", fmt::format("{:.2f} px off; good below {}", health.row_px, kGoodRow_px));
-  fact("pan", fmt::format("{:.1f} \u00b1 {:.1f} px", health.pan_px, health.pan_sigma_px));
-  fact("points", fmt::format("{} in {:.0f} % of the picture", health.points, 100 * health.covered));
+  put_text(color_of_verdict(health.verdict), fmt::format("By this scene: {}", name_of(health.verdict)));
+  put_fact("rows", fmt::format("{:.2f} px off; good below {}", health.row_px, kGoodRow_px));
+  put_fact("pan", fmt::format("{:.1f} \u00b1 {:.1f} px", health.pan_px, health.pan_sigma_px));
+  put_fact("points", fmt::format("{} in {:.0f} % of the picture", health.points, 100 * health.covered));
 }
 
 }  // namespace duo::app::view

@@ -24,14 +24,6 @@ std::string words_of(const SourceChoice& choice) {
   return out;
 }
 
-void put(ImU32 color, const std::string& text, ImFont* font = nullptr) {
-  if (font != nullptr) ImGui::PushFont(font);
-  ImGui::PushStyleColor(ImGuiCol_Text, color);
-  ImGui::TextWrapped("%s", text.c_str());
-  ImGui::PopStyleColor();
-  if (font != nullptr) ImGui::PopFont();
-}
-
 }  // namespace
 
 std::vector<StartPage::Way> StartPage::ways() {
@@ -64,6 +56,7 @@ std::optional<SourceChoice> StartPage::choose(const std::string& problem) {
     Window::wait(ImGui::IsAnyMouseDown() ? 0.01 : 0.1);
     for (const int key : window_.keys()) {
       if (key == GLFW_KEY_Q) return std::nullopt;
+      if (key == GLFW_KEY_F12) window_.want_screenshot();
       const auto number = static_cast<std::size_t>(key - GLFW_KEY_1);
       if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9 && number < all.size()) return all[number].choice;
     }
@@ -71,6 +64,7 @@ std::optional<SourceChoice> StartPage::choose(const std::string& problem) {
     if (!window_.begin()) continue;
     auto chosen = draw(all);
     window_.end();
+    window_.write_screenshot();
     if (chosen && chosen->rig.empty()) chosen->rig = rig_;
     if (chosen) return chosen;
   }
@@ -97,14 +91,14 @@ std::optional<SourceChoice> StartPage::draw(const std::vector<Way>& ways) {
   ImGui::SetNextWindowPos({(size.x - width) / 2, 20 * scale});
   ImGui::SetNextWindowSize({width, size.y - 40 * scale});
   ImGui::Begin("start", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
-  put(kText, "What shall be looked at?", title_font());
-  put(kFaint,
-      "Drop two videos or one recording here, with a rig file if they need one; or choose by a click or a number's key.");
-  if (!rig_.empty()) put(kAccent, "rig: " + short_name(rig_));
-  if (!problem_.empty()) put(kBad, problem_);
+  put_text(kText, "What shall be looked at?", title_font());
+  put_text(kFaint,
+           "Drop two videos or one recording here, with a rig file if they need one; or choose by a click or a number's key.");
+  if (!rig_.empty()) put_text(kAccent, "rig: " + short_name(rig_));
+  if (!problem_.empty()) put_text(kBad, problem_);
   for (std::size_t i = 0; i < ways.size(); ++i) {
     const Way& way = ways[i];
-    if (!way.title.empty()) ImGui::Dummy({0, 6 * scale}), put(kText, way.title, title_font());
+    if (!way.title.empty()) ImGui::Dummy({0, 6 * scale}), put_text(kText, way.title, title_font());
     if (ImGui::Button(fmt::format("{}   {}##{}", i + 1, way.name, i).c_str(), {0.55f * width, 0})) out = way.choice;
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();

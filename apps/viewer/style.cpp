@@ -68,6 +68,22 @@ ImFont* title_font() {
   return fonts[fonts.Size > 1 ? 1 : 0];
 }
 
+void put_text(ImU32 color, const std::string& text, ImFont* font) {
+  if (font != nullptr) ImGui::PushFont(font);
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+  if (font != nullptr) ImGui::PopFont();
+}
+
+void put_fact(const char* name, const std::string& text) {
+  ImGui::TextDisabled("%s", name);
+  ImGui::SameLine(ImGui::GetFontSize() * 7.5f);
+  put_text(kText, text);
+}
+
 ImU32 color_of(JointState state) {
   switch (state) {
     case JointState::kSeen:

@@ -3,6 +3,8 @@
 
 #include <imgui/imgui.h>
 
+#include <string>
+
 #include "duoptic/person.h"
 
 namespace duo::app::view {
@@ -17,6 +19,11 @@ inline constexpr ImU32 kWarn = IM_COL32(250, 190, 60, 255), kBad = IM_COL32(255,
 void set_style(float scale);
 /// The same face, for titles.
 ImFont* title_font();
+
+/// A paragraph in a colour; in another face where one is given.
+void put_text(ImU32 color, const std::string& text, ImFont* font = nullptr);
+/// A name and what it is.
+void put_fact(const char* name, const std::string& text);
 
 /// Of a joint by its state: seen, inferred, lost.
 ImU32 color_of(JointState state);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "calibration_page.h"
 #include "command.h"
 #include "duoptic/frame_files.h"
 #include "duoptic/interrupt.h"
@@ -37,10 +38,17 @@ constexpr char kFooter[] =
 
 constexpr Size kWindow = {1440, 860};
 
-constexpr std::pair<const char*, const char*> kKeys[] = {
-    {"Space", "pause, play"}, {"Right", "next frame"},       {"Home", "play a file from its start"},
-    {"R", "record, stop"},    {"Backspace", "undo a click"}, {"S", "points as duoptic_view_001.ply"},
-    {"F12", "window as PNG"}, {"F1", "these keys"},          {"Q", "close"}};
+constexpr std::pair<const char*, const char*> kKeys[] = {{"Space", "pause, play"},
+                                                         {"Left, Right", "the frame before, the next one"},
+                                                         {"Home", "play a file from its start"},
+                                                         {"R", "record, stop"},
+                                                         {"Backspace", "undo a click"},
+                                                         {"P", "rectified pair in place of hue"},
+                                                         {"Double click", "one panel alone, all of them"},
+                                                         {"S", "points, depth and picture into files"},
+                                                         {"F12", "window as PNG"},
+                                                         {"F1", "these keys"},
+                                                         {"Q", "close"}};
 
 struct Options {
   PlayerOptions player;
@@ -48,14 +56,6 @@ struct Options {
   std::int64_t after = 0;
   bool paused = false;
 };
-
-/// "duoptic_view_001" and so on.
-std::string free_name(const char* ending) {
-  std::error_code ignored;
-  for (int i = 1;; ++i)
-    if (const std::string name = fmt::format("duoptic_view_{:03}{}", i, ending); !std::filesystem::exists(name, ignored))
-      return name;
-}
 
 class Viewer {
  public:
@@ -116,7 +116,7 @@ class Viewer {
     ImGui::SetCursorScreenPos({io.DisplaySize.x - beside - margin, margin});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {10 * window_.scale(), 10 * window_.scale()});
     ImGui::BeginChild("controls", {beside, io.DisplaySize.y - 2 * margin}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
-    if (sidebar_.draw(player_, clicks_, shown_.get(), note_)) window_.want_screenshot();
+    if (sidebar_.draw(player_, clicks_, panels_.choices(), shown_.get(), note_)) window_.want_screenshot();
     ImGui::EndChild();
     ImGui::PopStyleVar();
     ImGui::End();
@@ -154,6 +154,12 @@ class Viewer {
       if (key == GLFW_KEY_SPACE) player_.play(state != PlayState::kPlaying);
       if (key == GLFW_KEY_RIGHT && state == PlayState::kPlaying) player_.play(false);
       if (key == GLFW_KEY_RIGHT) player_.step();
+      if (key == GLFW_KEY_LEFT && shown_ && !player_.live()) {
+        player_.play(false);
+        player_.seek(std::max<std::int64_t>(0, shown_->number - 1));
+      }
+      if (key == GLFW_KEY_P) panels_.choices().rectified_pair = !panels_.choices().rectified_pair;
+      if (key == GLFW_KEY_ESCAPE) panels_.enlarge(std::nullopt);
       if (key == GLFW_KEY_BACKSPACE && clicks_.wanted()) clicks_.undo();
       if (key == GLFW_KEY_R) player_.record(!player_.recording().on);
       if (key == GLFW_KEY_HOME) player_.restart();
@@ -164,14 +170,15 @@ class Viewer {
     }
   }
 
-  /// The points of what is shown, as a PLY.
+  /// What is shown: points as duoptic_view_001.ply, and beside them duoptic_view_001_depth.png and _left_rectified.png.
   void keep_points() {
-    const std::string name = free_name(".ply");
-    FrameFiles files{.outputs = {FrameOutput::kCloud}};
+    const std::filesystem::path points = free_name(".ply");
+    FrameFiles files{.outputs = {FrameOutput::kDepth, FrameOutput::kPicture, FrameOutput::kCloud}};
     files.cloud.metric = player_.header().metric;
-    const auto written =
-        write_frame(*shown_->frame, player_.header().rectified, files, [&](const std::string&) { return name; });
-    note_ = written ? "written: " + name : written.error().what;
+    const auto written = write_frame(*shown_->frame, player_.header().rectified, files, [&](const std::string& name) {
+      return name.ends_with(".ply") ? points : std::filesystem::path(points.stem().string() + "_" + name);
+    });
+    note_ = written ? "written: " + points.string() + ", and its PNGs" : written.error().what;
   }
 
   void draw_keys() const {
@@ -221,31 +228,59 @@ class Viewer {
   bool held_ = false, resume_ = false, done_ = false, help_ = false;
 };
 
-Result<std::unique_ptr<Player>> open_player(Options& options, const CLI::App& app) {
-  options.player.rig.reset();
-  if (!options.rig.empty()) {
-    DUO_TRY_ASSIGN(options.player.rig, load_rig(options.rig));
-  }
-  return Player::open(options.player, app);
-}
-
 Result<std::unique_ptr<Window>> open_window() {
   DUO_TRY_ASSIGN(auto window, Window::open("duoptic view", kWindow));
   set_style(window->scale());
   return window;
 }
 
+Result<Input> open_given(Options& options) {
+  options.player.rig.reset();
+  if (!options.rig.empty()) {
+    DUO_TRY_ASSIGN(options.player.rig, load_rig(options.rig));
+  }
+  return open_input(options.player.left, options.player.right, options.player.rig, options.player.input);
+}
+
+/// In the window, which is opened where it is not; false when it was closed before a rig was saved.
+Result<bool> calibrate(Options& options, std::unique_ptr<Window>& window, std::unique_ptr<PairSource> pairs) {
+  if (!window) {
+    DUO_TRY_ASSIGN(window, open_window());
+  }
+  PlayerOptions& source = options.player;
+  while (true) {
+    DUO_TRY_ASSIGN(const CalibrationEnd end,
+                   CalibrationPage::run(*window, {source.left, source.right, source.input, Window::wake}, std::move(pairs)));
+    options.rig = end.rig;
+    if (!end.swapped) return !end.rig.empty();
+    std::swap(source.left, source.right);
+    DUO_TRY_ASSIGN(Input input, open_given(options));
+    pairs = std::move(input.pairs);
+  }
+}
+
+/// What is named, with its rig; cameras and videos without one are calibrated first. Null when the window was closed.
+Result<std::unique_ptr<Player>> open_player(Options& options, std::unique_ptr<Window>& window, const CLI::App& app) {
+  DUO_TRY_ASSIGN(Input input, open_given(options));
+  if (!input.rig && !input.pairs->still() && options.screenshot.empty()) {
+    DUO_TRY_ASSIGN(const bool calibrated, calibrate(options, window, std::move(input.pairs)));
+    if (!calibrated) return std::unique_ptr<Player>();
+    DUO_TRY_ASSIGN(input, open_given(options));
+  }
+  return Player::open(options.player, std::move(input), app);
+}
+
 /// Until what was chosen can be shown; null when the window was closed.
-Result<std::unique_ptr<Player>> choose_player(Options& options, Window& window, const CLI::App& app) {
-  StartPage page(window, options.rig);
+Result<std::unique_ptr<Player>> choose_player(Options& options, std::unique_ptr<Window>& window, const CLI::App& app) {
+  StartPage page(*window, options.rig);
   std::string problem;
   while (const auto choice = page.choose(problem)) {
     options.player.left = choice->left;
     options.player.right = choice->right;
     options.rig = choice->rig;
-    auto player = open_player(options, app);
-    if (player) return player;
-    problem = player.error().what;
+    auto player = open_player(options, window, app);
+    if (player && *player) return player;
+    problem = player ? "" : player.error().what;
   }
   return std::unique_ptr<Player>();
 }
@@ -257,10 +292,12 @@ Result<Exit> run(Options options, const CLI::App& app) {
   std::unique_ptr<Player> player;
   if (options.player.left.empty()) {
     DUO_TRY_ASSIGN(window, open_window());
-    DUO_TRY_ASSIGN(player, choose_player(options, *window, app));
-    if (!player) return Exit::kOk;
+    DUO_TRY_ASSIGN(player, choose_player(options, window, app));
   } else {
-    DUO_TRY_ASSIGN(player, open_player(options, app));
+    DUO_TRY_ASSIGN(player, open_player(options, window, app));
+  }
+  if (!player) return Exit::kOk;
+  if (!window) {
     DUO_TRY_ASSIGN(window, open_window());
   }
   remember_source({options.player.left, options.player.right, options.rig});

@@ -9,6 +9,10 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#include "duoptic/sink.h"
 
 namespace duo::app::view {
 namespace {
@@ -53,6 +57,13 @@ Image<Rgb8> drawn_pixels() {
 
 }  // namespace
 
+std::string free_name(const char* ending) {
+  std::error_code ignored;
+  for (int i = 1;; ++i)
+    if (const std::string name = fmt::format("duoptic_view_{:03}{}", i, ending); !std::filesystem::exists(name, ignored))
+      return name;
+}
+
 Result<std::unique_ptr<Window>> Window::open(const std::string& title, Size size) {
   std::unique_ptr<Window> out(new Window);
   DUO_TRY(out->create_window(title, size));
@@ -77,6 +88,14 @@ std::vector<int> Window::keys() {
   std::vector<int> out = std::exchange(keys_, {});
   if (ImGui::GetIO().WantTextInput) out.clear();
   return out;
+}
+
+std::string Window::write_screenshot() {
+  const auto picture = screenshot();
+  if (!picture) return {};
+  const std::string name = free_name(".png");
+  const auto written = write_png(*picture, name);
+  return written ? "written: " + name : written.error().what;
 }
 
 void Window::set_title(const std::string& title) {

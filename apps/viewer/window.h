@@ -14,6 +14,9 @@ struct GLFWwindow;
 
 namespace duo::app::view {
 
+/// "duoptic_view_001" and so on in the working folder, with this ending; a name that no file has.
+std::string free_name(const char* ending);
+
 /// GLFW's window, its OpenGL context and ImGui's, one of each in a process.
 ///
 /// Threads  the main thread's; wake() is anyone's
@@ -47,6 +50,8 @@ class Window {
   /// The next end() keeps what it shows; then screenshot() has it once.
   void want_screenshot() { wanted_ = true; }
   std::optional<Image<Rgb8>> screenshot() { return std::exchange(screenshot_, std::nullopt); }
+  /// Writes it under a free_name(): what to say of that; empty where there is none.
+  std::string write_screenshot();
 
  private:
   Window() = default;

@@ -1,6 +1,8 @@
 // Calibration: pictures of a board in, a rig out that says how good it is.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -72,6 +74,10 @@ struct Calibration {
   std::vector<std::string> warnings;  // what to know before trusting it, one line each, and what to do; none = good
 };
 
+/// Cells of a camera's picture, row by row, that have corners.
+inline constexpr Size kCoverageSize = {12, 9};
+using Coverage = std::array<bool, std::size_t{12} * 9>;
+
 /// Collects views of a board, from files or from live cameras alike, and calibrates.
 ///
 /// Corners are OpenCV's, made exact by our own refinement; each camera is first calibrated alone (Zhang, 2000, OpenCV's
@@ -92,10 +98,18 @@ class Calibrator {
   /// Errors  the pictures do not have the size of the first; the first that look like a board show another one than named
   Result<const BoardView*> add(const Pair& pair, const std::string& name);
 
-  int pairs() const;  // looked at
+  /// The same in two steps, for whoever keeps only some of the views. look() gives a board up soon that only a long search
+  /// would find, and takes tens of milliseconds at 640x480. The pictures must have the size of the calibrator.
+  BoardView look(const Pair& pair, const std::string& name) const;
+  const BoardView* keep(BoardView view);
+  /// Another side of the squares, also of the views that were kept.
+  void set_square_m(double square_m);
+
+  int pairs() const;  // added or kept
   const std::vector<BoardView>& views() const;
 
-  /// Share of a camera's picture (0 left, 1 right), 12x9 cells, that has corners.
+  /// Where a camera's picture (0 left, 1 right) has corners, and in what share of it.
+  Coverage covered(int camera) const;
   double coverage(int camera) const;
 
   /// Errors  one line that says what is missing or wrong: too few views, all of one pose, blurred, another board than named,
@@ -138,4 +152,4 @@ Result<void> write_calibration_report(const Calibration& calibration, const Boar
 /// Errors  those of every rig; pictures of another size
 Result<Pair> rectify_pair(const Rig& rig, const Pair& pair);
 
-}  // namespace duo
+}  // namespace gnu::visibility("default")]]duo

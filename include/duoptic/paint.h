@@ -27,10 +27,14 @@ DisparityRange disparity_range(View<const std::uint16_t> d_q4);
 /// metres when `rectified` is given, else in px. The range of the colours is disparity_range().
 Image<Rgb8> draw_disparity(View<const std::uint16_t> d_q4, const Rectified* rectified);
 
-/// Disparity in the colours of draw_disparity() over a given range; black where there is none.
+/// Colour maps from far to near. Cividis (Nunez, Anderton, Renslow, 2018) reads alike with any colour vision.
+enum class DepthColors : std::uint8_t { kTurbo, kCividis, kGray };
+
+/// Disparity in the colours of draw_disparity(), or others, over a given range; black where there is none.
 ///
 /// Shape  both H x W
-void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range, View<Rgb8> dst);
+void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range, View<Rgb8> dst,
+                     DepthColors colors = DepthColors::kTurbo);
 
 /// The colour of a joint in draw_regions().
 Rgb8 shade_of(JointId joint);
@@ -128,4 +132,4 @@ Image<Rgb8> draw_panels(const TrackedFrame& frame, const TrackHeader& header, co
 /// Of draw_panels(), whatever the frame.
 Size panels_size(const TrackHeader& header);
 
-}  // namespace duo
+}  // namespace gnu::visibility("default")]]duo

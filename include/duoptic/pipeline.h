@@ -132,10 +132,11 @@ class Pipeline {
 
   /// Lets the source go, before the same is opened again.
   void close_source();
-  /// From the first pair of another source of the same pictures; sinks go on counting frames. The tracker forgets.
+  /// From pair `first` of another source of the same pictures, which is reached as PipelineSetup::first is; sinks go on
+  /// counting frames. The tracker forgets.
   ///
   /// Errors  its pictures have another size; those of Tracker::prepare()
-  Result<void> restart(std::unique_ptr<PairSource> pairs);
+  Result<void> restart(std::unique_ptr<PairSource> pairs, std::int64_t first = 0);
 
   const Tracker* tracker() const;  // null: none
   const TrackHeader& header() const;

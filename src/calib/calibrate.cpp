@@ -28,15 +28,6 @@ constexpr std::size_t kKeptPairs = 3;
 
 Error refused(const std::string& why) { return {ErrorCode::kBadInput, "cannot calibrate: " + why}; }
 
-cv::Mat gray_of(const Picture& picture) {
-  const View<const Rgb8> view = picture.pixels;
-  const cv::Mat rgb(view.height(), view.width(), CV_8UC3, const_cast<Rgb8*>(view.data()),
-                    static_cast<std::size_t>(view.stride()) * sizeof(Rgb8));
-  cv::Mat gray;
-  cv::cvtColor(rgb, gray, cv::COLOR_RGB2GRAY);
-  return gray;
-}
-
 /// Angle between the board's normals that differ most.
 double tilt_rad(const Bundle& bundle) {
   double most = 0;
@@ -139,21 +130,20 @@ struct Calibrator::State {
   bool any_found = false;
   std::vector<std::pair<cv::Mat, cv::Mat>> first_pairs;  // until a board was found
 
-  BoardView look(const Pair& pair, const std::string& name);
+  BoardView look(const Pair& pair, const std::string& name, BoardSearch search) const;
   Result<std::vector<const BoardView*>> usable() const;
   Error no_board() const;
   Error disagreeing(const std::vector<const BoardView*>& views) const;
   Result<Bundle> fit(std::vector<const BoardView*>& views, std::vector<std::string>& rejected) const;
 };
 
-BoardView Calibrator::State::look(const Pair& pair, const std::string& name) {
+BoardView Calibrator::State::look(const Pair& pair, const std::string& name, BoardSearch search) const {
   BoardView view;
   view.name = name;
   bool blurred = false;
   for (const bool left : {true, false}) {
     const cv::Mat gray = gray_of(left ? pair.left : pair.right);
-    FoundBoard found = find_board(gray, board);
-    any_found = any_found || !found.corners.empty();
+    FoundBoard found = find_board(gray, board, search);
     if (!found.corners.empty()) {
       const double spread_px = edge_spread_px(gray, board, found);
       view.sharp_px = std::max(view.sharp_px, spread_px);
@@ -278,7 +268,6 @@ Result<const BoardView*> Calibrator::add(const Pair& pair, const std::string& na
       return refused(fmt::format("the {} picture of {} is {}x{}, the first one {}x{}; all must have one size",
                                  picture == &pair.left ? "left" : "right", name, size.width, size.height, state_->size.width,
                                  state_->size.height));
-  ++state_->pairs;
   // Another board is told with the first pair that shows it: the search for what is not there takes seconds a picture.
   if (!state_->any_found && state_->first_pairs.size() < kKeptPairs) {
     const auto& [left, right] = state_->first_pairs.emplace_back(gray_of(pair.left), gray_of(pair.right));
@@ -286,23 +275,39 @@ Result<const BoardView*> Calibrator::add(const Pair& pair, const std::string& na
       return refused(fmt::format("a {} was looked for, but {} shows a {}; give --board {}", corner_words(state_->board), name,
                                  corner_words(*seen), seen->name()));
   }
-  state_->views.push_back(state_->look(pair, name));
-  return &state_->views.back();
+  return keep(state_->look(pair, name, BoardSearch::kThorough));
 }
+
+BoardView Calibrator::look(const Pair& pair, const std::string& name) const {
+  return state_->look(pair, name, BoardSearch::kQuick);
+}
+
+const BoardView* Calibrator::keep(BoardView view) {
+  ++state_->pairs;
+  state_->any_found = state_->any_found || !view.left.empty() || !view.right.empty();
+  return &state_->views.emplace_back(std::move(view));
+}
+
+void Calibrator::set_square_m(double square_m) { state_->board.square_m = square_m; }
 
 int Calibrator::pairs() const { return state_->pairs; }
 const std::vector<BoardView>& Calibrator::views() const { return state_->views; }
 
-double Calibrator::coverage(int camera) const {
-  constexpr int kAcross = 12, kDown = 9;
-  std::array<bool, kAcross * kDown> seen{};
+Coverage Calibrator::covered(int camera) const {
+  Coverage cells{};
   for (const BoardView& view : state_->views)
     for (const BoardCorner& c : camera == 0 ? view.left : view.right) {
-      const int x = std::clamp(static_cast<int>(c.x_px * kAcross / state_->size.width), 0, kAcross - 1);
-      const int y = std::clamp(static_cast<int>(c.y_px * kDown / state_->size.height), 0, kDown - 1);
-      seen[static_cast<std::size_t>(y * kAcross + x)] = true;
+      const int x = std::clamp(static_cast<int>(c.x_px * kCoverageSize.width / state_->size.width), 0, kCoverageSize.width - 1);
+      const int y =
+          std::clamp(static_cast<int>(c.y_px * kCoverageSize.height / state_->size.height), 0, kCoverageSize.height - 1);
+      cells[static_cast<std::size_t>(y * kCoverageSize.width + x)] = true;
     }
-  return static_cast<double>(std::count(seen.begin(), seen.end(), true)) / (kAcross * kDown);
+  return cells;
+}
+
+double Calibrator::coverage(int camera) const {
+  const Coverage cells = covered(camera);
+  return static_cast<double>(std::count(cells.begin(), cells.end(), true)) / static_cast<double>(cells.size());
 }
 
 Result<Calibration> Calibrator::solve() const {

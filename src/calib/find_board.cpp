@@ -22,13 +22,21 @@ double spacing_px(const Board& board, const std::vector<BoardCorner>& corners) {
   return count > 0 ? sum / count : 0;
 }
 
-FoundBoard find_chessboard(const cv::Mat& gray, const Board& board) {
+FoundBoard find_chessboard(const cv::Mat& gray, const Board& board, BoardSearch search) {
   FoundBoard found;
   const cv::Size size(board.inner_columns(), board.inner_rows());
   std::vector<cv::Point2f> corners;
   constexpr int kFlags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
-  // Pictures without a board are told by the fast check; only those that pass it and still fail are searched the long way.
-  if (!cv::findChessboardCorners(gray, size, corners, kFlags | cv::CALIB_CB_FAST_CHECK)) {
+  if (search == BoardSearch::kQuick) {
+    constexpr int kLarge_px = 960;
+    const int factor = gray.cols >= kLarge_px ? 2 : 1;
+    cv::Mat searched = gray;
+    if (factor > 1) cv::resize(gray, searched, {}, 1.0 / factor, 1.0 / factor, cv::INTER_AREA);
+    if (!cv::findChessboardCorners(searched, size, corners, kFlags | cv::CALIB_CB_FAST_CHECK)) return found;
+    const float half = 0.5f * static_cast<float>(factor - 1);  // pixels of one size have their centres between those of another
+    for (cv::Point2f& corner : corners) corner = static_cast<float>(factor) * corner + cv::Point2f(half, half);
+  } else if (!cv::findChessboardCorners(gray, size, corners, kFlags | cv::CALIB_CB_FAST_CHECK)) {
+    // Pictures without a board are told by the fast check; only those that pass it and still fail are searched the long way.
     if (!cv::checkChessboard(gray, size)) return found;
     if (!cv::findChessboardCorners(gray, size, corners, kFlags) && !cv::findChessboardCornersSB(gray, size, corners))
       return found;
@@ -73,10 +81,19 @@ FoundBoard corners_between(const std::vector<Marker>& markers, const Board& boar
 
 }  // namespace
 
-FoundBoard find_board(const cv::Mat& gray, const Board& board) {
+cv::Mat gray_of(const Picture& picture) {
+  const View<const Rgb8> view = picture.pixels;
+  const cv::Mat rgb(view.height(), view.width(), CV_8UC3, const_cast<Rgb8*>(view.data()),
+                    static_cast<std::size_t>(view.stride()) * sizeof(Rgb8));
+  cv::Mat gray;
+  cv::cvtColor(rgb, gray, cv::COLOR_RGB2GRAY);
+  return gray;
+}
+
+FoundBoard find_board(const cv::Mat& gray, const Board& board, BoardSearch search) {
   FoundBoard found;
   try {
-    found = board.kind == Board::Kind::kChessboard ? find_chessboard(gray, board)
+    found = board.kind == Board::Kind::kChessboard ? find_chessboard(gray, board, search)
                                                    : corners_between(find_markers(gray, board), board, gray.size());
     found.spacing_px = spacing_px(board, found.corners);
     if (found.spacing_px > 0) refine_corners(gray, board, found);

@@ -1,6 +1,7 @@
 // Finding a board's corners in a picture.
 #pragma once
 
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -14,10 +15,17 @@ struct FoundBoard {
   double spacing_px = 0;  // mean distance of neighbours
 };
 
+enum class BoardSearch : std::uint8_t {
+  kThorough,  // what looks like a chessboard and is not found is searched for again, which takes seconds
+  kQuick,     // live: large pictures are searched at half their size, and once
+};
+
 /// All corners of a chessboard, or those of a ChArUco board whose markers are seen.
 ///
 /// Shape   8-bit gray; throws nothing
-FoundBoard find_board(const cv::Mat& gray, const Board& board);
+FoundBoard find_board(const cv::Mat& gray, const Board& board, BoardSearch search = BoardSearch::kThorough);
+
+cv::Mat gray_of(const Picture& picture);
 
 /// Markers of a ChArUco board by their ids, four corners each, clockwise from the marker's own top left.
 struct Marker {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -19,6 +20,20 @@ double position(const DisparityRange& range, double d_px) { return (d_px - range
 
 /// The ends of the map are left out: its first colours look black, which stands for none.
 Rgb8 color_at(double position) { return turbo(0.06 + 0.91 * std::clamp(position, 0.0, 1.0)); }
+
+/// The other maps, from far to near; the first grays are left out, too.
+std::array<Rgb8, 256> steps_of(DepthColors colors) {
+  std::array<Rgb8, 256> out;
+  cv::Mat ramp(1, 256, CV_8UC1), bgr;
+  for (int i = 0; i < 256; ++i) ramp.at<std::uint8_t>(0, i) = static_cast<std::uint8_t>(i);
+  cv::applyColorMap(ramp, bgr, cv::COLORMAP_CIVIDIS);
+  for (int i = 0; i < 256; ++i) {
+    const auto gray = static_cast<std::uint8_t>(40 + i * 215 / 255);
+    const auto& c = bgr.at<cv::Vec3b>(0, i);
+    out[static_cast<std::size_t>(i)] = colors == DepthColors::kGray ? Rgb8{gray, gray, gray} : Rgb8{c[2], c[1], c[0]};
+  }
+  return out;
+}
 
 struct Tick {
   double d_px;
@@ -53,13 +68,18 @@ DisparityRange disparity_range(View<const std::uint16_t> d_q4) {
 }
 
 // A table, because there are far fewer disparities than pixels.
-void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range, View<Rgb8> dst) {
+void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range, View<Rgb8> dst, DepthColors of) {
   DUO_CHECK(d_q4.size() == dst.size());
+  const auto steps = of == DepthColors::kTurbo ? std::array<Rgb8, 256>{} : steps_of(of);
+  const auto color = [&](double d_px) {
+    const double at = std::clamp(position(range, d_px), 0.0, 1.0);
+    return of == DepthColors::kTurbo ? color_at(at) : steps[static_cast<std::size_t>(255 * at + 0.5)];
+  };
   std::vector<Rgb8> colors(Disparity::kNone + 1u);
   const auto near_q4 =
       range.empty() ? 0u : std::min<unsigned>(static_cast<unsigned>(std::max(0.0, 16 * range.near_px)) + 1, Disparity::kNone);
-  for (unsigned d = 0; d < near_q4; ++d) colors[d] = color_at(position(range, d / 16.0));
-  if (!range.empty()) std::fill(colors.begin() + near_q4, colors.end() - 1, color_at(1));
+  for (unsigned d = 0; d < near_q4; ++d) colors[d] = color(d / 16.0);
+  if (!range.empty()) std::fill(colors.begin() + near_q4, colors.end() - 1, color(range.near_px));
   for (int y = 0; y < d_q4.height(); ++y)
     for (int x = 0; x < d_q4.width(); ++x) dst.at(y, x) = colors[d_q4.at(y, x)];
 }

@@ -15,6 +15,23 @@ namespace {
 using namespace test;  // NOLINT: the persons
 
 /// By hand, of a picture 320 px wide, focal length 500 px: 5 cm at 2 m are 12.5 px.
+TEST(ColorDisparity, GrayAndCividisGrowBrighterTowardsTheCameras) {
+  Image<std::uint16_t> d_q4({4, 1});
+  d_q4.at(0, 0) = 16 * 10, d_q4.at(0, 1) = 16 * 30, d_q4.at(0, 2) = 16 * 50, d_q4.at(0, 3) = Disparity::kNone;
+  Image<Rgb8> painted(d_q4.size());
+  color_disparity(d_q4, {10, 50}, painted, DepthColors::kGray);
+  EXPECT_EQ(painted.at(0, 0), (Rgb8{40, 40, 40}));
+  EXPECT_EQ(painted.at(0, 1), (Rgb8{147, 147, 147}));  // 40 + 128 * 215 / 255
+  EXPECT_EQ(painted.at(0, 2), (Rgb8{255, 255, 255}));
+  EXPECT_EQ(painted.at(0, 3), Rgb8{});
+  color_disparity(d_q4, {10, 50}, painted, DepthColors::kCividis);
+  EXPECT_GT(painted.at(0, 0).b, painted.at(0, 0).r + 30);  // from dark blue to yellow
+  EXPECT_GT(painted.at(0, 2).r, painted.at(0, 2).b + 100);
+  EXPECT_LT(painted.at(0, 0).g, painted.at(0, 1).g);
+  EXPECT_LT(painted.at(0, 1).g, painted.at(0, 2).g);
+  EXPECT_EQ(painted.at(0, 3), Rgb8{});
+}
+
 TEST(Shapes, BonesAndMarksByHand) {
   Moment moment({320, 240});
   moment.set(kShoulder, {0, 0, 2}, 0.04, 1, 10, 20, JointState::kSeen);

@@ -333,9 +333,10 @@ void Pipeline::close_source() {
   s.people.clear();
 }
 
-Result<void> Pipeline::restart(std::unique_ptr<PairSource> pairs) {
+Result<void> Pipeline::restart(std::unique_ptr<PairSource> pairs, std::int64_t first) {
   State& s = *state_;
   close_source();
+  s.setup.first = first;
   if (pairs->size() != s.header.size)
     return Error{ErrorCode::kBadInput,
                  fmt::format("cannot start again: the pictures were {}x{} and are {}x{} now", s.header.size.width,

@@ -86,6 +86,19 @@ TEST(Pipeline, FirstAndEveryChooseFrames) {
   EXPECT_EQ(pipeline.read(), kClipPairs);
 }
 
+TEST(Pipeline, ARestartBeginsAtAnyPair) {
+  const auto all = frames_of(pipeline_setup());
+  Pipeline pipeline = opened(pipeline_setup());
+  ASSERT_EQ(*pipeline.next(), Next::kNew);
+  for (const std::int64_t first : {6, 2, 0}) {
+    ASSERT_TRUE(pipeline.restart(std::make_unique<Clip>(), first));
+    const auto rest = frames_of(pipeline);
+    ASSERT_EQ(static_cast<std::int64_t>(rest.size()), kClipPairs - first);
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      expect_same_maps(*all[static_cast<std::size_t>(first) + i], *rest[i], "from " + std::to_string(first));
+  }
+}
+
 // The frame at hand and those that were already made ahead are made anew; a setup that is refused changes nothing.
 TEST(Pipeline, OtherParametersOnTheWay) {
   const std::vector<std::pair<std::string, double>> other = {{"levels", 1}};

@@ -239,7 +239,7 @@ TEST_F(ViewWindow, SaysWhatIsWrong) {
   fails(clip, kInput, "there is no display", "env -u DISPLAY -u WAYLAND_DISPLAY ");
   const std::string old_card = "MESA_GL_VERSION_OVERRIDE=2.1 MESA_GLES_VERSION_OVERRIDE=2.0 ";
   fails(clip, kInput, "there is no driver for OpenGL 3.0", display() + old_card);
-  fails("left.mp4 right.mp4", kInput, "it does not bring a rig; give one with --rig", display());
+  fails("left.png right.png", kInput, "it does not bring a rig; give one with --rig", display());
   fails("none.mp4 right.mp4 --rig rig.json", kInput, "none.mp4", display());
   fails(clip + " -o none/lines.jsonl", kOutput, "make the folder first", display());
   fails(clip + " --screenshot none/window.png", kOutput, "make the folder first", display());

@@ -98,7 +98,7 @@ class ViewWindow : public ::testing::Test {
     // -noreset: without it the server starts anew when its last window closes, and lets nobody in meanwhile.
     const std::string start =
         "cd '" + at("").string() +
-        "' && { Xvfb -displayfd 1 -screen 0 1500x900x24 -nolisten tcp -noreset >display.txt 2>/dev/null & echo $! "
+        "' && { Xvfb -displayfd 1 -screen 0 1920x1080x24 -nolisten tcp -noreset >display.txt 2>/dev/null & echo $! "
         ">xvfb.txt; }";
     ASSERT_EQ(std::system(start.c_str()), 0);
     ASSERT_TRUE(waited([] { return !bytes_of(at("display.txt")).empty(); }));
@@ -114,7 +114,9 @@ class ViewWindow : public ::testing::Test {
   static fs::path at(const std::string& name) { return *folder_ / name; }
   static std::string display() { return "DISPLAY=:" + std::to_string(std::atoi(bytes_of(at("display.txt")).c_str())) + " "; }
   /// Drivers are unloaded before leaks are looked for, so that theirs cannot be told from ours.
-  static std::string environment() { return display() + "ASAN_OPTIONS=detect_leaks=0 XDG_CACHE_HOME='" + at("cache").string() + "' "; }
+  static std::string environment() {
+    return display() + "ASAN_OPTIONS=detect_leaks=0 XDG_CACHE_HOME='" + at("cache").string() + "' ";
+  }
 
   /// What a command prints.
   static std::string told(const std::string& command) {
