@@ -200,7 +200,7 @@ void CalibrationPage::put_words() {
                             : ended                                       ? "No more pictures"
                             : status_.pair                                ? look.words
                                                                           : "Waiting for pictures";
-  ImGui::SetWindowFontScale(1.35f);
+  ImGui::SetWindowFontScale(ImGui::GetIO().DisplaySize.x > 900 * window_.scale() ? 1.7f : 1.3f);
   put_text(solved || look.step == GuideStep::kTaken ? kBox : kAccent, words, title_font());
   ImGui::SetWindowFontScale(1);
   if (status_.silent) put_text(kBad, "no pictures come: is a camera unplugged?");
@@ -244,6 +244,7 @@ void CalibrationPage::put_result() {
 void CalibrationPage::put_ways_on() {
   const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
   if (status_.state == CalibratingState::kSolved) {
+    ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("save as");
     ImGui::SameLine(70 * window_.scale());
     ImGui::SetNextItemWidth(-1);
@@ -293,7 +294,8 @@ void CalibrationPage::put_board() {
     if (board) calibrating_->set_square_m(board->square_m);
   }
   ImGui::SameLine();
-  ImGui::TextDisabled("measure it: distances depend on it");
+  ImGui::TextDisabled("as measured");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("All distances grow and shrink with it.");
   if (!note_.empty()) put_text(kFaint, note_);
 }
 

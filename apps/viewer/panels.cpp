@@ -119,7 +119,9 @@ Panels::Cell Panels::cell(const Box& box, const char* title, const std::string& 
   const float title_height = kTitle * scale_, caption_height = kCaption * scale_, margin = kMargin * scale_;
   list.AddRectFilled(from, to, kPanel, 6 * scale_);
   ImGui::PushFont(title_font());
+  list.PushClipRect(from, to, true);
   list.AddText({from.x + margin, from.y + 6 * scale_}, kText, title);
+  list.PopClipRect();
   const float title_width = ImGui::CalcTextSize(title).x;
   ImGui::PopFont();
   const float width = ImGui::CalcTextSize(note.c_str()).x;
@@ -279,17 +281,26 @@ void Panels::draw_region(const Cell& cell) {
   if (!shown_) return;
   picture(cell, region_);
   ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto keys = shade_keys(header_);
+  float words = 0, shades = 0;
+  for (const ShadeKey& key : keys) {
+    words += ImGui::CalcTextSize(key.name.c_str()).x + 14 * scale_;
+    shades += static_cast<float>(key.joints.size());
+  }
+  const float shade = std::clamp((cell.caption_width - words) / std::max(shades, 1.0f), 4 * scale_, 16 * scale_);
+  list.PushClipRect(cell.caption, {cell.caption.x + cell.caption_width, cell.caption.y + kCaption * scale_}, true);
   float x = cell.caption.x;
-  for (const ShadeKey& key : shade_keys(header_)) {
+  for (const ShadeKey& key : keys) {
     for (const JointId joint : key.joints) {
       const Rgb8 c = shade_of(joint);
-      list.AddRectFilled({x, cell.caption.y + 6 * scale_}, {x + 16 * scale_, cell.caption.y + 20 * scale_},
+      list.AddRectFilled({x, cell.caption.y + 6 * scale_}, {x + shade, cell.caption.y + 20 * scale_},
                          IM_COL32(c.r, c.g, c.b, 255), 3 * scale_);
-      x += 16 * scale_;
+      x += shade;
     }
-    list.AddText({x + 6 * scale_, cell.caption.y + 5 * scale_}, kText, key.name.c_str());
-    x += 24 * scale_ + ImGui::CalcTextSize(key.name.c_str()).x;
+    list.AddText({x + 4 * scale_, cell.caption.y + 5 * scale_}, kText, key.name.c_str());
+    x += 14 * scale_ + ImGui::CalcTextSize(key.name.c_str()).x;
   }
+  list.PopClipRect();
 }
 
 void Panels::draw_hue_panel(const Cell& cell) {
@@ -298,7 +309,8 @@ void Panels::draw_hue_panel(const Cell& cell) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float bottom = cell.caption.y + 10 * scale_;
   hue_strip_.draw(list, cell.caption, {cell.caption.x + cell.caption_width, bottom});
-  for (const int degrees : {0, 60, 120, 180, 240, 300}) {
+  const int step = cell.caption_width > 200 * scale_ ? 60 : 120;  // as many as have room
+  for (int degrees = 0; degrees < 360; degrees += step) {
     const float x = cell.caption.x + static_cast<float>(degrees) * cell.caption_width / 360;
     list.AddText({x, bottom + 3 * scale_}, kText, std::to_string(degrees).c_str());
   }

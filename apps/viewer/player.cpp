@@ -33,6 +33,7 @@ Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options, Input
   TrackingOptions tracking = options.tracking.or_tracker("body");
   tracking.all_maps = true;
   DUO_TRY_ASSIGN(PipelineSetup setup, tracking.setup(input));
+  setup.frames.wants.depth = true;  // for who saves what is shown
   setup.check = options.check;
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
   player->rig_ = *pipeline.setup().rig;

@@ -93,9 +93,12 @@ std::optional<SourceChoice> StartPage::draw(const std::vector<Way>& ways) {
   ImGui::Begin("start", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
   put_text(kText, "What shall be looked at?", title_font());
   put_text(kFaint,
-           "Drop two videos or one recording here, with a rig file if they need one; or choose by a click or a number's key.");
+           "Drop two videos or one recording here, with their rig file if there is one; or choose by a click or a number's "
+           "key. What has "
+           "no rig is calibrated first.");
   if (!rig_.empty()) put_text(kAccent, "rig: " + short_name(rig_));
   if (!problem_.empty()) put_text(kBad, problem_);
+  ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, {0, 0.5f});
   for (std::size_t i = 0; i < ways.size(); ++i) {
     const Way& way = ways[i];
     if (!way.title.empty()) ImGui::Dummy({0, 6 * scale}), put_text(kText, way.title, title_font());
@@ -104,6 +107,7 @@ std::optional<SourceChoice> StartPage::draw(const std::vector<Way>& ways) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", way.note.c_str());
   }
+  ImGui::PopStyleVar();
   ImGui::End();
   return out;
 }

@@ -4,6 +4,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -102,7 +103,7 @@ class Viewer {
 
   Result<void> draw() {
     const ImGuiIO& io = ImGui::GetIO();
-    const float margin = 8 * window_.scale(), beside = 320 * window_.scale();
+    const float margin = 8 * window_.scale(), beside = std::min(320 * window_.scale(), 0.38f * io.DisplaySize.x);
     ImGui::SetNextWindowPos({0, 0});
     ImGui::SetNextWindowSize(io.DisplaySize);
     ImGui::Begin("duoptic", nullptr,

@@ -166,6 +166,8 @@ bool Window::begin() {
 
 void Window::end() {
   ImGui::Render();
+  const ImVec4& ground = ImGui::GetStyle().Colors[ImGuiCol_WindowBg];
+  glClearColor(ground.x, ground.y, ground.z, 1);
   glClear(GL_COLOR_BUFFER_BIT);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   if (std::exchange(wanted_, false)) screenshot_ = drawn_pixels();

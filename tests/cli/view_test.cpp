@@ -204,6 +204,53 @@ TEST_F(Running, ABoxOfOutputsWritesItsFile) {
   for (const char* joint : kJoints) EXPECT_NE(found[0].find(fmt::format("right_{},", joint)), std::string::npos) << found[0];
 }
 
+/// Frame steps both ways, a panel alone and all again, and a region that is measured: by what the window shows.
+TEST_F(Running, StepsEnlargesAndMeasures) {
+  constexpr Rgb8 kLine = {232, 234, 238};
+  const auto caption = [](const Image<Rgb8>& window) {  // "frame 2   0.07 s"
+    Image<Rgb8> out({170, 22});
+    for (int y = 0; y < out.height(); ++y) std::copy_n(window.row(12 + y) + 370, out.width(), out.row(y));
+    return out;
+  };
+  const auto same = [](View<const Rgb8> a, View<const Rgb8> b) {
+    for (int y = 0; y < a.height(); ++y)
+      if (!std::equal(a.row(y), a.row(y) + a.width(), b.row(y))) return false;
+    return true;
+  };
+  start("left.mp4 right.mp4 --rig rig.json --model lite --paused");
+  Image<Rgb8> first, second, third;
+  ASSERT_TRUE(waited([&] { return hues_in((first = screenshot()).crop(40, 570, {520, 380})) > 5; }));
+  const auto changed = [&](const Image<Rgb8>& from, Image<Rgb8>& to) {
+    return waited([&] { return !same(caption(from), caption(to = screenshot())); });
+  };
+  press("Right");
+  ASSERT_TRUE(changed(first, second));
+  press("Right");
+  ASSERT_TRUE(changed(second, third));
+  press("Left");
+  EXPECT_TRUE(waited([&] { return same(caption(second), caption(screenshot())); }));
+
+  const auto rectangle = [&](const Image<Rgb8>& window) {
+    return near(window, 700, 120, 1, kLine) + near(window, 800, 150, 1, kLine);
+  };
+  EXPECT_EQ(rectangle(second), 0);
+  told(fmt::format(
+      "xdotool mousemove --window {0} 640 120 mousedown 1 sleep 0.3 mousemove --window {0} 800 260 sleep 0.3 mouseup 1",
+      window_));
+  EXPECT_TRUE(waited([&] { return rectangle(screenshot()) > 2; }));
+
+  // Alone, depth covers what was the lower row.
+  const auto alone = [&] {
+    told("xdotool mousemove --window " + window_ + " 700 200 click --repeat 2 --delay 150 1 sleep 0.3");
+    return hues_in(screenshot().crop(500, 20, {300, 200})) > 5;
+  };
+  EXPECT_TRUE(waited(alone));
+  press("Escape");
+  EXPECT_TRUE(waited([&] { return same(caption(second), caption(screenshot())); }));
+  press("q");
+  expect_end(0);
+}
+
 TEST_F(Running, AnInterruptCompletesTheLines) {
   start("left.mp4 right.mp4 --rig rig.json --tracker arm --loop -o interrupted.jsonl");
   wait_for_title("Click");
