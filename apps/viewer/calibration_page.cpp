@@ -216,9 +216,11 @@ void CalibrationPage::put_words() {
   const auto share = [](const Coverage& cells) {
     return 100 * std::count(cells.begin(), cells.end(), true) / static_cast<std::ptrdiff_t>(cells.size());
   };
-  put_text(kFaint, fmt::format("{} of {} wishes met, {} view{} taken; covered: {} % of the left picture, {} % of the right",
-                               met, kBoardWishes, status_.views, status_.views == 1 ? "" : "s", share(status_.covered[0]),
-                               share(status_.covered[1])));
+  std::string far = fmt::format("{} of {} wishes met, {} view{} taken; covered: {} % of the left picture, {} % of the right",
+                                met, kBoardWishes, status_.views, status_.views == 1 ? "" : "s", share(status_.covered[0]),
+                                share(status_.covered[1]));
+  if (status_.count > 0) far += fmt::format("; {} % of the file", 100 * status_.looked / status_.count);
+  put_text(kFaint, far);
   if (status_.views == 0 && !ended)
     put_text(kFaint,
              "Print a board with duoptic board -o board.pdf and tape it flat. Turn the lenses until focus is largest, then fix "

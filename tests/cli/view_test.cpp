@@ -219,7 +219,7 @@ TEST_F(Running, StepsEnlargesAndMeasures) {
   };
   start("left.mp4 right.mp4 --rig rig.json --model lite --paused");
   Image<Rgb8> first, second, third;
-  ASSERT_TRUE(waited([&] { return hues_in((first = screenshot()).crop(40, 570, {520, 380})) > 5; }));
+  ASSERT_TRUE(waited([&] { return hues_in((first = screenshot()).view().crop(40, 570, {520, 380})) > 5; }));
   const auto changed = [&](const Image<Rgb8>& from, Image<Rgb8>& to) {
     return waited([&] { return !same(caption(from), caption(to = screenshot())); });
   };
@@ -242,7 +242,7 @@ TEST_F(Running, StepsEnlargesAndMeasures) {
   // Alone, depth covers what was the lower row.
   const auto alone = [&] {
     told("xdotool mousemove --window " + window_ + " 700 200 click --repeat 2 --delay 150 1 sleep 0.3");
-    return hues_in(screenshot().crop(500, 20, {300, 200})) > 5;
+    return hues_in(screenshot().view().crop(500, 20, {300, 200})) > 5;
   };
   EXPECT_TRUE(waited(alone));
   press("Escape");
