@@ -51,6 +51,7 @@ struct TrackHeader {
   double frame_s = 1.0 / 30;
   bool live = false;   // from cameras: what differs from run to run is told, too
   bool metric = true;  // as Rig::metric
+  bool focus = false;  // frames were matched around people alone
 };
 
 struct TrackTimes {

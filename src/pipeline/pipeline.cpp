@@ -88,6 +88,7 @@ Result<void> Pipeline::State::prepare() {
     }
     add_wants(tracker->wants(), of_engine.wants);
     header.tracker = tracker->name();
+    header.focus = setup.focus;
     header.skeletons.assign(tracker->skeletons().begin(), tracker->skeletons().end());
   }
   if (setup.threads <= 0) setup.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));

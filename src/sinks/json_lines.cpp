@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/file.h"
-#include "duoptic/stdout.h"
 #include "duoptic/sink.h"
+#include "duoptic/stdout.h"
 #include "sinks/text_values.h"
 
 namespace duo {
@@ -51,12 +51,12 @@ std::string header_line(const TrackHeader& r) {
   return fmt::format(
       R"({{"type":"header","version":{},"units":{{"length":"{}","time":"s","uv":"px of the raw left picture"}},)"
       R"("rig_from_left":[{}],"focal_px":{},"baseline_m":{},"sources":[{}],"engine":{},"device":{},"matcher":{},"matcher_preset":{},)"
-      R"("tracker":{},"skeletons":{{{}}},"width":{},"height":{},"frame_s":{}}})"
+      R"("tracker":{},{}"skeletons":{{{}}},"width":{},"height":{},"frame_s":{}}})"
       "\n",
       kVersion, r.metric ? "m" : "unknown", fmt::join(rotation, ","), number(r.rectified.focal_px, 4),
       number(r.rectified.baseline_m, 6), fmt::join(sources, ","), quoted(r.engine),
       r.device.empty() ? "null" : quoted(r.device), quoted(r.matcher), quoted(r.matcher_preset), quoted(r.tracker),
-      fmt::join(skeletons, ","), r.size.width, r.size.height, number(r.frame_s, 6));
+      r.focus ? R"("focus":true,)" : "", fmt::join(skeletons, ","), r.size.width, r.size.height, number(r.frame_s, 6));
 }
 
 std::string text_of(const Joint& joint) {

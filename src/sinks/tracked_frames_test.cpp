@@ -49,6 +49,16 @@ TEST(JsonLines, BytesByHand) {
                                                  R"(],"engine_ms":12.346,"tracker_ms":1.000})" + "\n"));
 }
 
+TEST(JsonLines, SayWhatWasMatchedAroundPeopleAlone) {
+  const test::TempFolder folder;
+  TrackHeader header = clip_header({64, 48});
+  header.focus = true;
+  auto sink = make_json_lines(folder / "arm.jsonl", header);
+  ASSERT_TRUE(sink);
+  ASSERT_TRUE((*sink)->finish());
+  EXPECT_NE(bytes_of(folder / "arm.jsonl").find(R"("tracker":"arm","focus":true,"skeletons":{)"), std::string::npos);
+}
+
 TEST(JsonLines, SeveralPersonsAndNone) {
   const test::TempFolder folder;
   Moment moment({64, 48});
