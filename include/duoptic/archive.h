@@ -7,11 +7,13 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "duoptic/result.h"
 
-namespace [[gnu::visibility("default")]] duo {
+#pragma GCC visibility push(default)
+namespace duo {
 
 /// One piece of work: a recording, or a range of its frames.
 struct ArchiveTask {
@@ -111,16 +113,17 @@ class Batch {
                             const std::function<void(std::int64_t)>& progress = {});
   const std::filesystem::path& folder() const { return out_; }
   const std::vector<ArchiveTask>& tasks() const { return tasks_; }
-  /// Reads the folder. `details`: also of tasks that are done; else only that they are.
+  /// Reads the folder; the record of a task that is done is read once.
   ///
   /// Errors  it cannot be read
-  Result<BatchStatus> status(bool details = true) const;
+  Result<BatchStatus> status() const;
   /// Removes what dead workers left.
   void sweep() const;
 
  private:
   std::filesystem::path out_;
   std::vector<ArchiveTask> tasks_;
+  mutable std::unordered_map<std::string, TaskStatus> done_;  // by key
 };
 
 /// How a task ended.
@@ -168,3 +171,4 @@ bool has_slurm();
 Result<std::vector<std::filesystem::path>> collect(const Batch& batch);
 
 }  // namespace duo
+#pragma GCC visibility pop

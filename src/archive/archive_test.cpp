@@ -244,6 +244,12 @@ TEST(Batch, StatusIsWhatTheFolderSays) {
   batch->sweep();
   EXPECT_TRUE(fs::exists(out / "work" / living));
   EXPECT_FALSE(fs::exists(out / "work" / dead) || fs::exists(out / "work" / elsewhere));
+  // A record is read once; results that are taken away are missing at once.
+  put(out / "done" / key(0) / "done.json", "");
+  EXPECT_EQ(batch->status()->done, 2);
+  EXPECT_EQ(Batch::open(out, "1")->status()->done, 1);
+  fs::remove_all(out / "done" / key(0));
+  EXPECT_EQ(batch->status()->done, 1);
 }
 
 TEST(Summarize, CountsStatesOfJoints) {

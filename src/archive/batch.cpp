@@ -120,11 +120,15 @@ Result<Batch> Batch::open(const fs::path& given, const std::string& version,
 
 namespace {
 
-void add_done(const nlohmann::json& record, TaskStatus& task, BatchStatus& status) {
-  task.exit = record.value("exit", 0);
-  task.host = record.value("host", "");
-  task.seconds = record.value("seconds", 0.0);
-  task.frames = record.value("frames", std::int64_t{0});
+TaskStatus done_by(const nlohmann::json& record) {
+  return {.state = TaskState::kDone,
+          .exit = record.value("exit", 0),
+          .host = record.value("host", ""),
+          .seconds = record.value("seconds", 0.0),
+          .frames = record.value("frames", std::int64_t{0})};
+}
+
+void add_done(const TaskStatus& task, BatchStatus& status) {
   status.cut += task.exit == 3;
   HostSpeed& host = status.hosts[task.host];
   ++host.tasks;
@@ -134,7 +138,7 @@ void add_done(const nlohmann::json& record, TaskStatus& task, BatchStatus& statu
 
 }  // namespace
 
-Result<BatchStatus> Batch::status(bool details) const {
+Result<BatchStatus> Batch::status() const {
   BatchStatus status;
   status.tasks.resize(tasks_.size());
   std::unordered_map<std::string, std::vector<std::size_t>> by_key;
@@ -167,12 +171,17 @@ Result<BatchStatus> Batch::status(bool details) const {
   DUO_TRY_ASSIGN(const auto done, names_in(out_ / kDone));
   for (const std::string& name : done) {
     if (!by_key.contains(name)) continue;
-    const nlohmann::json record = details ? read_json_object(out_ / kDone / name / kDoneFile) : nlohmann::json::object();
-    if (!record.is_object()) continue;
+    auto known = done_.find(name);
+    if (known == done_.end()) {
+      const nlohmann::json record = read_json_object(out_ / kDone / name / kDoneFile);
+      if (!record.is_object()) continue;
+      known = done_.emplace(name, done_by(record)).first;
+    }
     each(name, [&](TaskStatus& task) {
-      task.state = TaskState::kDone;
-      task.what.clear();
-      if (details) add_done(record, task, status);
+      const int failures = task.failures;
+      task = known->second;
+      task.failures = failures;
+      add_done(task, status);
     });
   }
   DUO_TRY_ASSIGN(const auto faults, names_in(out_ / kFaults));
@@ -191,8 +200,7 @@ Result<BatchStatus> Batch::status(bool details) const {
     seconds += task.seconds;
     if (!status.slowest || task.seconds > status.tasks[*status.slowest].seconds) status.slowest = i;
   }
-  if (status.done > 0 && details)
-    status.left_s = seconds / status.done * (status.missing + status.running) / std::max(1, status.running);
+  if (status.done > 0) status.left_s = seconds / status.done * (status.missing + status.running) / std::max(1, status.running);
   return status;
 }
 

@@ -320,6 +320,15 @@ TEST_F(BatchTool, WithoutRoomAndWhereNobodyMayWrite) {
   EXPECT_EQ(run("batch run full --local --quiet").exit, 0);  // with room again
   expect_like_serial("full");
 
+  // One node's disk is full: what it leaves, others do.
+  plan("one_full");
+  ASSERT_EQ(run("batch status one_full").exit, 0);
+  const Ended on_it = run("batch work one_full " + any_key("one_full"), "ulimit -f 40;");
+  EXPECT_EQ(on_it.exit, kOutput) << on_it.err;
+  EXPECT_EQ(status("one_full")["failures"].size(), 1u);
+  EXPECT_EQ(run("batch run one_full --local --quiet").exit, 0);
+  expect_like_serial("one_full");
+
   plan("closed");
   put(at("closed/work"), "a file");
   const Ended closed = run("batch run closed --local");

@@ -98,7 +98,7 @@ until_true 20 bash -c '[[ $(sinfo -h -o %T) == idle ]]'
 say "a controller and two nodes"
 
 # Slow on purpose, so that all that is killed is at work: plain loops.
-"$tool" synth --script wave --frames 20 --size 160x120 --quiet -o clip >/dev/null
+"$tool" synth --script wave --frames 12 --size 160x120 --quiet -o clip >/dev/null
 for i in 01 02 03 04 05 06 07 08 09 10 11 12; do
   mkdir -p "archive/p$i"
   cp clip/left.avi clip/right.avi "archive/p$i/"
@@ -127,10 +127,10 @@ resume_nodes() {
 workers() { for p in $(tasks_of n1; tasks_of n2); do tr '\0' ' ' <"/proc/$p/cmdline" 2>/dev/null | grep -q 'batch work' && echo "$p"; done; }
 a_worker() { resume_nodes; worker=$(workers | head -n 1); [[ -n $worker ]]; }
 
-until_true 60 at_work n1
+until_true 120 at_work n1
 kill_node n1
 say "node n1 is killed with all that ran there; $(done_tasks) of 12 done"
-until_true 60 at_work n2
+until_true 120 at_work n2
 sleep 6  # the controller keeps its state every few seconds
 kill -9 "$(cat slurmctld.pid)"
 say "the controller is killed; $(done_tasks) of 12 done"
@@ -138,7 +138,7 @@ sleep 2
 slurmctld
 slurmd -N n1
 say "the controller and n1 are back"
-until_true 60 a_worker
+until_true 120 a_worker
 kill -9 "$worker"
 say "a worker is killed; $(done_tasks) of 12 done"
 while kill -0 "$runner" 2>/dev/null; do
