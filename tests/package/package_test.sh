@@ -66,10 +66,10 @@ case $what in
   desktop)
     # What menus and software centres show.
     command -v desktop-file-validate appstreamcli >/dev/null || { echo "skipped: no desktop-file-validate, or no appstreamcli"; exit 77; }
-    share=$prefix/share id=org.duoptic.Duoptic
-    desktop-file-validate "$share/applications/$id.desktop"
-    appstreamcli validate --no-net "$share/metainfo/$id.metainfo.xml"
-    [[ -s $share/icons/hicolor/scalable/apps/$id.svg ]]
+    share=$prefix/share
+    desktop-file-validate "$share/applications/duoptic.desktop"
+    appstreamcli validate --no-net "$share/metainfo/invalid.duoptic.Duoptic.metainfo.xml"
+    [[ -s $share/icons/hicolor/scalable/apps/duoptic.svg ]]
     ;;
   notice)
     # Every library that the tool, the shared library and the Python module ask for is in NOTICE, and nothing else is.
