@@ -1,8 +1,9 @@
 from os import PathLike
-from typing import Any, Literal, Mapping, Sequence
+from typing import Literal, Mapping, Sequence, TypedDict
 
 import numpy as np
 import numpy.typing as npt
+from typing_extensions import Unpack
 
 __version__: str
 _Path = str | PathLike[str]
@@ -157,22 +158,37 @@ class Frames:
     @property
     def doubts(self) -> str: ...
 
+class _SourceOptions(TypedDict, total=False):
+    rig: Rig | _Path | None
+    skew_ms: float
+    layout: Literal["side-by-side", "right-left", "top-bottom", "bottom-top"] | None
+
+class _EngineOptions(TypedDict, total=False):
+    rig: Rig | _Path | None
+    engine: str
+    threads: int
+    matcher: str
+    preset: str
+    parameters: Mapping[str, float]
+    max_disparity: int | None
+    near_m: float | None
+    fill: bool
+    maps: Sequence[_Map] | None
+
+class _OpenOptions(_SourceOptions, _EngineOptions, total=False):
+    tracker: Literal["body", "arm", "thesis"] | None
+    model: Literal["lite", "full", "heavy"]
+    first: int
+    every: int
+    strict: bool
+    keep_rows: bool
+
+class _RecordOptions(_SourceOptions, total=False):
+    seconds: float
+    replace: bool
+
 class Engine:
-    def __init__(
-        self,
-        size: tuple[int, int],
-        *,
-        rig: Rig | _Path | None = None,
-        engine: str = "auto",
-        threads: int = 0,
-        matcher: str = "sgm",
-        preset: str = "default",
-        parameters: Mapping[str, float] = ...,
-        max_disparity: int | None = None,
-        near_m: float | None = None,
-        fill: bool = False,
-        maps: Sequence[_Map] | None = None,
-    ) -> None: ...
+    def __init__(self, size: tuple[int, int], **options: Unpack[_EngineOptions]) -> None: ...
     def __call__(self, left: _U8, right: _U8) -> Frame: ...
 
 class Calibration:
@@ -187,40 +203,8 @@ class Calibration:
     @property
     def coverage(self) -> list[float]: ...
 
-def open(
-    left: _Path,
-    right: _Path | None = None,
-    *,
-    rig: Rig | _Path | None = None,
-    tracker: Literal["body", "arm", "thesis"] | None = None,
-    model: Literal["lite", "full", "heavy"] = "full",
-    maps: Sequence[_Map] | None = None,
-    engine: str = "auto",
-    threads: int = 0,
-    matcher: str = "sgm",
-    preset: str = "default",
-    parameters: Mapping[str, float] = ...,
-    max_disparity: int | None = None,
-    near_m: float | None = None,
-    fill: bool = False,
-    first: int = 0,
-    every: int = 1,
-    strict: bool = False,
-    skew_ms: float = 0.0,
-    layout: Literal["side-by-side", "right-left", "top-bottom", "bottom-top"] | None = None,
-    keep_rows: bool = False,
-) -> Frames: ...
-def record(
-    left: _Path,
-    right: _Path | None,
-    path: _Path,
-    *,
-    rig: Rig | _Path | None = None,
-    seconds: float = 0.0,
-    replace: bool = False,
-    skew_ms: float = 0.0,
-    layout: Literal["side-by-side", "right-left", "top-bottom", "bottom-top"] | None = None,
-) -> int: ...
+def open(left: _Path, right: _Path | None = None, **options: Unpack[_OpenOptions]) -> Frames: ...
+def record(left: _Path, right: _Path | None, path: _Path, **options: Unpack[_RecordOptions]) -> int: ...
 def calibrate(left: _Path, right: _Path | None = None, *, board: str, square_mm: float) -> Calibration: ...
 def load_rig(path: _Path) -> Rig: ...
-def depth(left: Any, right: Any, *, rig: Rig | _Path | None = None, **options: Any) -> Frame: ...
+def depth(left: _Path | _U8, right: _Path | _U8, **options: Unpack[_OpenOptions]) -> Frame: ...
