@@ -1,6 +1,6 @@
 # The few commands that everybody needs. Each first installs what is missing (tools/setup; does nothing when all is there).
 # build/release has the tool, and once `make test` was called the tests; build/sanitize the tests with ASan and UBSan.
-.PHONY: build demo test bench deb deb-test soak chaos batch-chaos cluster-test fuzz format setup-build setup-test
+.PHONY: build demo test bench deb deb-test soak chaos batch-chaos cluster-test batch-bench readers python-bench fuzz format setup-build setup-test
 
 build: setup-build
 	@test -f build/release/build.ninja || cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=OFF >/dev/null
@@ -15,11 +15,12 @@ test: setup-test
 bench: build
 	@build/release/duoptic bench
 
-# Debian packages in build/deb/packages: library, headers, tool, Python module.
+# Debian packages in build/deb/packages: library, headers, tool, Python module. Who gives them away names himself in them:
+# make deb MAINTAINER='Ada Lovelace <ada@example.com>'
 deb: setup-build
 	@tools/setup build package
 	@cmake -S . -B build/deb -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DCMAKE_INSTALL_PREFIX=/usr \
-	  -DDUO_TESTS=OFF -DDUO_PYTHON=ON -DDUO_XNNPACK=OFF >/dev/null
+	  -DDUO_TESTS=OFF -DDUO_PYTHON=ON -DDUO_XNNPACK=OFF $(if $(MAINTAINER),'-DDUO_MAINTAINER=$(MAINTAINER)') >/dev/null
 	@cmake --build build/deb
 	@cmake --build build/deb --target duoptic_manual >/dev/null && gzip -9nf build/deb/man/man1/*.1
 	@cd build/deb && rm -rf packages && cpack >cpack.log || { cat cpack.log; exit 1; }
@@ -53,6 +54,24 @@ batch-chaos: setup-test
 cluster-test: build
 	@tools/setup cluster
 	@tests/cluster/cluster_test.sh build/release/duoptic
+
+# What a second worker of `duoptic batch run --local` gains; on a machine with nothing else to do.
+batch-bench: build
+	@tests/cluster/scaling.sh build/release/duoptic
+
+# Installs readers of MCAP and glTF from npm, and has them read what is tracked in a recording.
+readers: setup-test
+	@command -v npm >/dev/null || tools/setup readers
+	@npm ci --prefix tests/readers --ignore-scripts --no-audit --no-fund
+	@cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=ON >/dev/null
+	@cmake --build build/release --target duoptic_tool
+	@ctest --test-dir build/release -R '^readers/' --output-on-failure
+
+# Throughput of the Python module beside the tool's, over the same recording: five minutes.
+python-bench: setup-test
+	@cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=ON -DDUO_PYTHON=ON >/dev/null
+	@cmake --build build/release --target duoptic_tool duoptic_python
+	@PYTHONPATH=build/release/python /usr/bin/python3 python/tests/throughput.py build/release/duoptic
 
 # Random bytes for every reader, a minute each.
 fuzz: setup-test
