@@ -233,9 +233,10 @@ std::filesystem::path models_folder() {
   static const char kHere = 0;  // where this code was loaded from
   Dl_info loaded{};
   if (dladdr(&kHere, &loaded) != 0 && loaded.dli_fname != nullptr) {
-    const auto installed = std::filesystem::path(loaded.dli_fname).parent_path() / DUO_MODELS_FROM_LIBRARY;
-    std::error_code none;
-    if (std::filesystem::is_directory(installed, none)) return installed.lexically_normal();
+    std::error_code none;  // not lexically: /lib, by which the library may have been found, is a link to /usr/lib
+    const auto installed =
+        std::filesystem::canonical(std::filesystem::path(loaded.dli_fname).parent_path() / DUO_MODELS_FROM_LIBRARY, none);
+    if (!none) return installed;
   }
   return DUO_MODELS;
 }

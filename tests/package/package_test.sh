@@ -38,6 +38,10 @@ case $what in
     [[ $(pkg-config --libs-only-l duoptic | xargs) == -lduoptic ]] || { echo "more than the library: $libraries"; exit 1; }
     c++ -std=c++20 $(pkg-config --cflags duoptic) "$consumer/consumer.cpp" -o "$folder/by_pkg_config" $libraries
     LD_LIBRARY_PATH=$prefix/lib runs "$folder/by_pkg_config" "$prefix"
+    # Found by a link to its folder, as by Debian's /lib, it still knows where it is.
+    mkdir -p "$folder/linked"
+    ln -sfn "$prefix/lib" "$folder/linked/lib"
+    LD_LIBRARY_PATH=$folder/linked/lib runs "$folder/by_pkg_config" "$prefix"
     ;;
   subproject)
     # Its objects are those of this build, if its commands are the same; if they are not, the launcher says so.
