@@ -215,10 +215,10 @@ void expect_whole(const fs::path& work) {
       EXPECT_TRUE(bytes_of(entry.path()).ends_with('\n')) << entry.path();
     } else if (ending == ".json") {
       EXPECT_FALSE(nlohmann::json::parse(bytes_of(entry.path()), nullptr, false).is_discarded()) << entry.path();
-    } else if (ending == ".mp4" || ending == ".avi" || ending == ".png") {
-      EXPECT_TRUE(open_source(entry.path())) << entry.path();
-    } else if (ending == ".mkv") {
+    } else if (entry.path().filename() == "clip.mkv") {
       EXPECT_TRUE(inspect_recording(entry.path())) << entry.path();
+    } else if (ending == ".mp4" || ending == ".avi" || ending == ".mkv" || ending == ".png") {
+      EXPECT_TRUE(open_source(entry.path())) << entry.path();
     }
   }
 }

@@ -11,6 +11,9 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <memory>
+#include <mutex>
+#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <string>
 #include <thread>
@@ -31,6 +34,9 @@ constexpr std::string_view kName = "synthetic";
 constexpr int kPairs = 60;  // two seconds: as long as people wait for them, and long enough to move an arm
 constexpr int kMostPairs = 300;
 constexpr std::chrono::nanoseconds kPeriod{1'000'000'000 / 30};
+constexpr int kLarge_px = 480;  // across: pairs of half the size come first, a quarter of the work
+
+using Pairs = std::vector<std::shared_ptr<const Pair>>;
 
 // --- Pictures of an earlier start ------------------------------------------------------------------------------------------
 
@@ -55,12 +61,12 @@ std::size_t bytes_of(const Pair& pair) {
   return 2 * sizeof(Rgb8) * static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
 }
 
-void keep(const std::filesystem::path& file, const std::vector<Pair>& pairs) {
+void keep(const std::filesystem::path& file, const Pairs& pairs) {
   std::string bytes = this_build();
-  if (file.empty() || bytes.empty() || pairs.size() * bytes_of(pairs[0]) > kMostKept) return;
-  bytes.reserve(bytes.size() + pairs.size() * bytes_of(pairs[0]));
-  for (const Pair& pair : pairs)
-    for (const Picture* picture : {&pair.left, &pair.right})
+  if (file.empty() || bytes.empty() || pairs.size() * bytes_of(*pairs[0]) > kMostKept) return;
+  bytes.reserve(bytes.size() + pairs.size() * bytes_of(*pairs[0]));
+  for (const auto& pair : pairs)
+    for (const Picture* picture : {&pair->left, &pair->right})
       for (int y = 0; y < picture->pixels.height(); ++y)
         bytes.append(reinterpret_cast<const char*>(picture->pixels.row(y)),
                      sizeof(Rgb8) * static_cast<std::size_t>(picture->pixels.width()));
@@ -68,7 +74,7 @@ void keep(const std::filesystem::path& file, const std::vector<Pair>& pairs) {
 }
 
 /// False where none are kept, or of another build.
-bool read_kept(const std::filesystem::path& file, Size size, std::vector<Pair>& pairs) {
+bool read_kept(const std::filesystem::path& file, Size size, Pairs& pairs) {
   const std::string build = this_build();
   if (file.empty() || build.empty()) return false;
   const auto bytes = read_file(file, kMostKept + build.size(), "cache");
@@ -77,20 +83,37 @@ bool read_kept(const std::filesystem::path& file, Size size, std::vector<Pair>& 
       bytes->size() != build.size() + 2 * pairs.size() * row * static_cast<std::size_t>(size.height))
     return false;
   const char* at = bytes->data() + build.size();
-  for (Pair& pair : pairs)
-    for (Picture* picture : {&pair.left, &pair.right}) {
+  for (auto& kept : pairs) {
+    auto pair = std::make_shared<Pair>();
+    for (Picture* picture : {&pair->left, &pair->right}) {
       picture->pixels = Image<Rgb8>(size);
       for (int y = 0; y < size.height; ++y, at += row) std::memcpy(picture->pixels.row(y), at, row);
     }
+    kept = std::move(pair);
+  }
   return true;
 }
 
 // --- The source ------------------------------------------------------------------------------------------------------------
 
+/// Twice as wide and high. The same rig sees it: pixels' centres stay where they are.
+Image<Rgb8> doubled(Image<Rgb8> small) {
+  Image<Rgb8> out({2 * small.width(), 2 * small.height()});
+  const auto mat = [](Image<Rgb8>& image) {
+    return cv::Mat(image.height(), image.width(), CV_8UC3, image.row(0),
+                   static_cast<std::size_t>(image.stride()) * sizeof(Rgb8));
+  };
+  const cv::Mat from = mat(small), to = mat(out);
+  cv::resize(from, to, to.size(), 0, 0, cv::INTER_LINEAR);
+  return out;
+}
+
 class LiveClip final : public PairSource {
  public:
-  explicit LiveClip(SyntheticClip clip)
+  /// `coarse`: the same with pictures of half the size, where there is time for them.
+  LiveClip(SyntheticClip clip, std::optional<SyntheticClip> coarse)
       : clip_(std::move(clip)),
+        coarse_(std::move(coarse)),
         size_(clip_.setup().size),
         rig_(clip_.rig()),
         all_(clip_.setup().frames),
@@ -109,7 +132,9 @@ class LiveClip final : public PairSource {
   std::optional<Rig> rig() const override { return rig_; }
   std::int64_t dropped() const override { return dropped_; }
   std::string warning() const override {
-    return rendered_ < all_ ? "the synthetic person is shown while she is rendered, slower than she moves" : "";
+    return fine_ < all_
+               ? "the synthetic person is shown while she is rendered, slower than she moves, large pictures coarsely at first"
+               : "";
   }
 
   Result<Next> next(Pair& into) override {
@@ -134,22 +159,38 @@ class LiveClip final : public PairSource {
   Result<void> render(const std::stop_token& stop) {
     const auto file = kept_file(clip_.setup());
     const bool kept = read_kept(file, size_, pairs_);
-    if (kept) rendered_ = all_;
-    for (int i = rendered_; i < all_ && !stop.stop_requested(); ++i) {
-      pairs_[static_cast<std::size_t>(i)] = clip_.frame(i).pair;
-      rendered_ = i + 1;
+    if (kept) rendered_ = fine_ = all_;
+    for (int i = 0; coarse_ && i < all_ && !kept && !stop.stop_requested(); ++i) {
+      auto pair = std::make_shared<Pair>(coarse_->frame(i).pair);
+      for (Picture* picture : {&pair->left, &pair->right}) picture->pixels = doubled(std::move(picture->pixels));
+      put(i, std::move(pair));
     }
-    if (!kept && rendered_ == all_) keep(file, pairs_);
+    for (int i = fine_; i < all_ && !stop.stop_requested(); ++i) {
+      put(i, std::make_shared<Pair>(clip_.frame(i).pair));
+      fine_ = i + 1;
+    }
+    if (!kept && fine_ == all_) keep(file, pairs_);
     return {};
+  }
+  void put(int i, std::shared_ptr<const Pair> pair) {
+    {
+      const std::lock_guard lock(mutex_);
+      pairs_[static_cast<std::size_t>(i)] = std::move(pair);
+    }
+    rendered_ = std::max(rendered_.load(), i + 1);
   }
   void show(std::int64_t number, Pair& into) const {
     const auto turn = static_cast<int>(number % (2 * all_ - 2));
-    const Pair& shown = pairs_[static_cast<std::size_t>(std::min(turn, 2 * all_ - 2 - turn))];
+    std::shared_ptr<const Pair> shown;
+    {
+      const std::lock_guard lock(mutex_);
+      shown = pairs_[static_cast<std::size_t>(std::min(turn, 2 * all_ - 2 - turn))];
+    }
     const TimeNs t_ns = (*start_ + number * kPeriod).time_since_epoch() / std::chrono::nanoseconds(1);
     for (Picture Pair::*side : {&Pair::left, &Pair::right}) {
       Picture& picture = into.*side;
       if (picture.pixels.size() != size_) picture.pixels = Image<Rgb8>(size_);
-      for (int y = 0; y < size_.height; ++y) std::copy_n((shown.*side).pixels.row(y), size_.width, picture.pixels.row(y));
+      for (int y = 0; y < size_.height; ++y) std::copy_n(((*shown).*side).pixels.row(y), size_.width, picture.pixels.row(y));
       picture.t_ns = t_ns;
       picture.sequence = static_cast<std::uint64_t>(number);
     }
@@ -157,11 +198,13 @@ class LiveClip final : public PairSource {
   }
 
   SyntheticClip clip_;
+  std::optional<SyntheticClip> coarse_;
   const Size size_;
   const Rig rig_;
-  const int all_;            // pairs
-  std::vector<Pair> pairs_;  // the first rendered_ of them are no longer the renderer's
-  std::atomic<int> rendered_ = 0;
+  const int all_;             // pairs
+  mutable std::mutex mutex_;  // of pairs_
+  Pairs pairs_;               // the first rendered_ of them are there
+  std::atomic<int> rendered_ = 0, fine_ = 0;
   std::optional<Clock::time_point> start_;
   std::int64_t last_ = -1;  // pair that was given
   std::atomic<std::int64_t> dropped_ = 0;
@@ -194,7 +237,13 @@ Result<std::unique_ptr<PairSource>> open_live_clip(std::string_view name) {
   }
   const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   DUO_TRY_ASSIGN(SyntheticClip clip, SyntheticClip::open(setup, threads));
-  auto live = std::make_unique<LiveClip>(std::move(clip));
+  std::optional<SyntheticClip> coarse;
+  if (setup.size.width >= kLarge_px && setup.size.width % 2 == 0 && setup.size.height % 2 == 0) {
+    setup.size = {setup.size.width / 2, setup.size.height / 2};
+    DUO_TRY_ASSIGN(SyntheticClip half, SyntheticClip::open(setup, threads));
+    coarse.emplace(std::move(half));
+  }
+  auto live = std::make_unique<LiveClip>(std::move(clip), std::move(coarse));
   DUO_TRY(live->start());
   return std::unique_ptr<PairSource>(std::move(live));
 }
