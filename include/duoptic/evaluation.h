@@ -115,6 +115,7 @@ RenderedAccuracy raw_accuracy(const Frame& frame, const Rectified& rectified, co
 struct JointTruth {
   Vec3 p_in_left_m;           // the joint's centre, in the raw left camera's axes
   double u_px = 0, v_px = 0;  // where it projects in the raw left picture, whether it is seen there or not
+  bool in_picture = false;    // in the left one
   bool visible = false;       // in both pictures, nothing in front of it
 };
 /// Of the joints that a frame's truth has; by JointId.
@@ -160,6 +161,7 @@ struct JointSample {
   JointState state = JointState::kLost;
   double error_mm = 0;  // means nothing when lost
   double sigma_mm = 0;
+  bool in_picture = true;
 };
 
 /// Numbers that a clip gives no occasion for are empty.
@@ -168,8 +170,8 @@ struct JointScore {
   std::optional<double> bad_percent;             // of visible frames: lost, or off by more than kBadJoint_mm
   std::optional<int> frames_to_recover;          // the most after kHiddenFrames or more hidden frames
   bool recovered = true;                         // false: at the end still not, and frames_to_recover only counts up to there
-  std::optional<double> hidden_median_mm;        // over hidden frames that are not lost
-  std::optional<double> hidden_lost_percent;     // of hidden frames
+  std::optional<double> hidden_median_mm;        // over frames in which it is hidden inside the picture and not lost
+  std::optional<double> hidden_lost_percent;     // of frames in which it is hidden inside the picture
   std::optional<double> hidden_false_percent;    // of hidden frames: called seen, and off by more than kBadJoint_mm
   std::optional<double> inside_3_sigma_percent;  // of seen and inferred frames, visible or not
 };

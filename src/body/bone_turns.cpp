@@ -144,44 +144,55 @@ BoneTurner::BoneTurner(const Skeleton& skeleton, BodyAxes axes) : nodes_(skeleto
   }
 }
 
-std::optional<std::vector<Mat3>> BoneTurner::turn(std::span<const Vec3> places) {
+std::optional<std::vector<Mat3>> BoneTurner::turn(std::span<const Vec3> places, std::span<const double> lengths) {
   constexpr double kShortest = 1e-6;
   std::vector<Mat3> out(nodes_.size()), whole(nodes_.size());  // whole: from the root's parent
   for (std::size_t j = 0; j < nodes_.size(); ++j)
     for (const std::size_t child : nodes_[j].children)
       if (norm(places[child] - places[j]) < kShortest) return std::nullopt;
+  std::vector<Vec3> reached(places.begin(), places.end());  // by the bones
+  std::vector<Vec3> bones, rest;
   for (std::size_t j = 0; j < nodes_.size(); ++j) {
     Node& node = nodes_[j];
-    std::vector<Vec3> bones;
-    for (const std::size_t child : node.children) bones.push_back(transposed(whole[j]) * normalized(places[child] - places[j]));
-    if (!bones.empty()) out[j] = turn_of(node, bones, whole[j], places);
-    for (const std::size_t child : node.children) whole[child] = whole[j] * out[j];
+    bones.clear();
+    rest.clear();
+    for (const std::size_t child : node.children) {
+      Vec3 way = places[child] - reached[j];
+      if (norm(way) < kShortest) way = places[child] - places[j];
+      const Vec3 bone = transposed(whole[j]) * way;
+      bones.push_back(lengths.empty() ? normalized(bone) : bone);
+      rest.push_back(lengths.empty() ? nodes_[child].rest : lengths[child] * nodes_[child].rest);
+    }
+    if (!bones.empty()) out[j] = turn_of(node, bones, rest, whole[j], places);
+    for (std::size_t i = 0; i < bones.size(); ++i) {
+      const std::size_t child = node.children[i];
+      whole[child] = whole[j] * out[j];
+      if (!lengths.empty()) reached[child] = reached[j] + whole[child] * rest[i];
+    }
   }
   return out;
 }
 
-Mat3 BoneTurner::turn_of(Node& node, std::span<const Vec3> bones, const Mat3& rig_from_parent, std::span<const Vec3> places) {
-  if (bones.size() > 1) {
-    std::vector<Vec3> rest;
-    for (const std::size_t child : node.children) rest.push_back(nodes_[child].rest);
-    return best_fit(rest, bones);
-  }
+Mat3 BoneTurner::turn_of(Node& node, std::span<const Vec3> bones, std::span<const Vec3> rest, const Mat3& rig_from_parent,
+                         std::span<const Vec3> places) {
+  if (bones.size() > 1) return best_fit(rest, bones);
   const std::size_t child = node.children[0];
+  const Vec3 bone = normalized(bones[0]);
   Vec3 keep = node.hinge_at_rest;
   if (node.bends) {
     const std::size_t end = nodes_[child].children[0];
     const Vec3 lower = transposed(rig_from_parent) * normalized(places[end] - places[child]);
-    const Vec3 bend = node.bend_sign * cross(bones[0], lower);
+    const Vec3 bend = node.bend_sign * cross(bone, lower);
     constexpr double kStraight = 0.17;  // sine of 10 degrees: below, noise decides where the hinge points
     if (norm(bend) > kStraight) node.hinge = normalized(bend);
     keep = node.hinge;
   }
   // Where the bone lies along the axis that it keeps, its own front stays where it can.
-  std::optional<Vec3> hinge = across(keep, bones[0]);
-  if (!hinge) hinge = across({0, 0, 1}, bones[0]);
-  if (!hinge) hinge = across({1, 0, 0}, bones[0]);
+  std::optional<Vec3> hinge = across(keep, bone);
+  if (!hinge) hinge = across({0, 0, 1}, bone);
+  if (!hinge) hinge = across({1, 0, 0}, bone);
   if (node.bends) node.hinge = *hinge;
-  return turn_to(nodes_[child].rest, node.hinge_at_rest, bones[0], *hinge);
+  return turn_to(nodes_[child].rest, node.hinge_at_rest, bone, *hinge);
 }
 
 std::array<double, 4> quaternion(const Mat3& rotation) {

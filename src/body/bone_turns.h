@@ -41,8 +41,11 @@ class BoneTurner {
   /// The turn of each joint in its parent's axes, in the order of the skeleton; the root's in those of the places. A joint that
   /// no bone begins at does not turn.
   ///
-  /// Units  any; only directions count. Empty when two joints of a bone coincide.
-  std::optional<std::vector<Mat3>> turn(std::span<const Vec3> places);
+  /// With `lengths`, of the bone that ends in each joint, bones that are not as long as the places are apart do not leave the
+  /// places behind: each is turned from where the bones before it lead to where it should end.
+  ///
+  /// Units  of places and lengths the same; without lengths only directions count. Empty when two joints of a bone coincide.
+  std::optional<std::vector<Mat3>> turn(std::span<const Vec3> places, std::span<const double> lengths = {});
 
  private:
   struct Node {
@@ -53,7 +56,8 @@ class BoneTurner {
     double bend_sign = 1;  // cross(upper, lower) points along the hinge when it bends as it can
     Vec3 hinge;            // of the limb, as it was last, in the parent's axes
   };
-  Mat3 turn_of(Node& node, std::span<const Vec3> bones_in_parent, const Mat3& rig_from_parent, std::span<const Vec3> places);
+  Mat3 turn_of(Node& node, std::span<const Vec3> bones_in_parent, std::span<const Vec3> rest, const Mat3& rig_from_parent,
+               std::span<const Vec3> places);
 
   std::vector<Node> nodes_;
 };

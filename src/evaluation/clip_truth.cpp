@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Throws nlohmann::json::exception where something is missing or of another kind.
-JointTruth joint_of(const nlohmann::json& j) {
+JointTruth joint_of(const nlohmann::json& j, Size picture) {
   JointTruth joint;
   const auto& xyz = j.at("xyz");
   joint.p_in_left_m = {xyz.at(0).get<double>(), xyz.at(1).get<double>(), xyz.at(2).get<double>()};
@@ -22,16 +22,17 @@ JointTruth joint_of(const nlohmann::json& j) {
   if (const auto& uv = j.at("uv_left"); !uv.is_null()) {
     joint.u_px = uv.at(0).get<double>();
     joint.v_px = uv.at(1).get<double>();
+    joint.in_picture = joint.u_px >= 0 && joint.v_px >= 0 && joint.u_px <= picture.width - 1 && joint.v_px <= picture.height - 1;
   }
   return joint;
 }
 
 Side side_named(const std::string& name) { return name == "left" ? Side::kLeft : Side::kRight; }
 
-FrameTruth frame_of(const nlohmann::json& joints) {
+FrameTruth frame_of(const nlohmann::json& joints, Size picture) {
   FrameTruth truth;
   for (const auto& [name, joint] : joints.items())
-    if (const auto id = joint_named(name)) truth[static_cast<std::size_t>(*id)] = joint_of(joint);
+    if (const auto id = joint_named(name)) truth[static_cast<std::size_t>(*id)] = joint_of(joint, picture);
   return truth;
 }
 
@@ -70,11 +71,11 @@ Result<ClipTruth> load_clip(const fs::path& folder) {
     clip.skew_ms = truth.at("meta").value("skew_ms", 0.0);
     clip.arm = side_named(truth.at("meta").at("selected_arm").get<std::string>());
     for (const auto& frame : truth.at("frames")) {
-      clip.frames.push_back(frame_of(frame.at("joints")));
+      clip.frames.push_back(frame_of(frame.at("joints"), clip.rig.left.size));
       if (!frame.contains("others")) continue;
       const auto& others = frame.at("others");
       clip.others.resize(std::max(clip.others.size(), others.size()));
-      for (std::size_t k = 0; k < others.size(); ++k) clip.others[k].push_back(frame_of(others[k].at("joints")));
+      for (std::size_t k = 0; k < others.size(); ++k) clip.others[k].push_back(frame_of(others[k].at("joints"), clip.rig.left.size));
     }
     for (const auto& other : clip.others)
       if (other.size() != clip.frames.size())

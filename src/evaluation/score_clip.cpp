@@ -43,7 +43,7 @@ double mean_off_m(const FrameTruth& truth, const Person& person, const Mat3& rig
 /// A joint that nobody has is lost. Of several people that have it, the one nearest to the true person counts.
 JointSample sample(const FrameTruth& frame, JointId id, std::span<const Person> people, const Mat3& rig_from_left) {
   const JointTruth& truth = *frame[static_cast<std::size_t>(id)];
-  JointSample out{truth.visible, JointState::kLost, 0, 0};
+  JointSample out{truth.visible, JointState::kLost, 0, 0, truth.in_picture};
   double least_m = std::numeric_limits<double>::infinity();
   for (const Person& person : people) {
     const Joint* found = person.find(id);
@@ -51,7 +51,7 @@ JointSample sample(const FrameTruth& frame, JointId id, std::span<const Person> 
     const double mean_m = people.size() > 1 ? mean_off_m(frame, person, rig_from_left) : 0;
     if (mean_m >= least_m) continue;
     least_m = mean_m;
-    out = {truth.visible, found->state, 1000 * off_m(truth, *found, rig_from_left), 1000 * found->sigma_m()};
+    out = {truth.visible, found->state, 1000 * off_m(truth, *found, rig_from_left), 1000 * found->sigma_m(), truth.in_picture};
   }
   return out;
 }

@@ -51,15 +51,17 @@ std::optional<double> percentile(std::vector<double> values, double share) {
 
 JointScore score_joint(const std::vector<JointSample>& samples) {
   std::vector<double> visible_mm, hidden_mm;
-  std::int64_t visible = 0, bad = 0, hidden = 0, hidden_lost = 0, hidden_false = 0, known = 0, inside = 0;
+  std::int64_t visible = 0, bad = 0, hidden = 0, hidden_lost = 0, hidden_false = 0, hidden_inside = 0, known = 0, inside = 0;
   for (const JointSample& s : samples) {
     const bool lost = s.state == JointState::kLost;
     (s.visible ? visible : hidden) += 1;
     if (s.visible) bad += !is_good(s);
-    if (!s.visible) hidden_lost += lost;
+    hidden_inside += !s.visible && s.in_picture;
+    hidden_lost += !s.visible && s.in_picture && lost;
     if (!s.visible) hidden_false += s.state == JointState::kSeen && s.error_mm > kBadJoint_mm;
     if (lost) continue;
-    (s.visible ? visible_mm : hidden_mm).push_back(s.error_mm);
+    if (s.visible) visible_mm.push_back(s.error_mm);
+    if (!s.visible && s.in_picture) hidden_mm.push_back(s.error_mm);
     ++known;
     inside += s.error_mm <= 3 * s.sigma_mm;
   }
@@ -68,7 +70,7 @@ JointScore score_joint(const std::vector<JointSample>& samples) {
   score.p95_mm = percentile(visible_mm, 0.95);
   score.bad_percent = percent(bad, visible);
   score.hidden_median_mm = percentile(hidden_mm, 0.5);
-  score.hidden_lost_percent = percent(hidden_lost, hidden);
+  score.hidden_lost_percent = percent(hidden_lost, hidden_inside);
   score.hidden_false_percent = percent(hidden_false, hidden);
   score.inside_3_sigma_percent = percent(inside, known);
   score_recovery(samples, score);

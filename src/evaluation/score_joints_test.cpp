@@ -42,6 +42,16 @@ TEST(JointScore, HiddenJointsThatAreCalledSeen) {
   EXPECT_EQ(*s.hidden_false_percent, 25);
 }
 
+TEST(JointScore, OutsideThePictureItMayBeAnywhere) {
+  const JointScore s = score_joint({
+      {false, kInferred, 70, 20},
+      {false, kInferred, 400, 200, false},
+      {false, kLost, 0, 0, false},
+  });
+  EXPECT_EQ(*s.hidden_median_mm, 70);
+  EXPECT_EQ(*s.hidden_lost_percent, 0);
+}
+
 TEST(JointScore, NothingToSay) {
   const JointScore s = score_joint({});
   EXPECT_FALSE(s.median_mm || s.p95_mm || s.bad_percent || s.frames_to_recover || s.hidden_median_mm || s.hidden_lost_percent ||

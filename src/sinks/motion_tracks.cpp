@@ -40,24 +40,29 @@ std::string MotionTrack::joint_name(std::size_t joint) const {
   return std::string(bone_name(skeleton_.joints[joint].id)) + name_end_;
 }
 
-Vec3 MotionTrack::offset_m(std::size_t joint) const {
+double MotionTrack::length_m(std::size_t joint) const {
   constexpr double kUnseen_m = 0.25;
   const auto parent = static_cast<std::size_t>(skeleton_.joints[joint].parent);
   std::vector<double> lengths_m;
   for (const auto& places : frames_)
     if (!places.empty()) lengths_m.push_back(norm(places[joint] - places[parent]));
-  const double length_m = lengths_m.empty() ? kUnseen_m : median(lengths_m);
-  return length_m * rest_direction(skeleton_.joints[joint].id, BodyAxes::kRightHanded);
+  return lengths_m.empty() ? kUnseen_m : median(lengths_m);
+}
+
+Vec3 MotionTrack::offset_m(std::size_t joint) const {
+  return length_m(joint) * rest_direction(skeleton_.joints[joint].id, BodyAxes::kRightHanded);
 }
 
 std::vector<MotionTrack::Pose> MotionTrack::poses(std::size_t count) const {
   BoneTurner turner(skeleton_, BodyAxes::kRightHanded);
+  std::vector<double> lengths_m(children_.size());
+  for (std::size_t j = 1; j < lengths_m.size(); ++j) lengths_m[j] = length_m(j);
   const Pose rest{{}, std::vector<Mat3>(children_.size())};
   std::vector<Pose> out(count, rest);
   std::size_t first_known = count;
   for (std::size_t i = 0; i < count; ++i) {
     const bool known = i < frames_.size() && !frames_[i].empty();
-    if (auto turns = known ? turner.turn(frames_[i]) : std::nullopt) {
+    if (auto turns = known ? turner.turn(frames_[i], lengths_m) : std::nullopt) {
       out[i] = {frames_[i][0], std::move(*turns)};
       first_known = std::min(first_known, i);
     } else if (first_known < i) {

@@ -57,6 +57,8 @@ class MotionTrack {
   std::vector<Pose> poses(std::size_t count) const;
 
  private:
+  double length_m(std::size_t joint) const;
+
   const Skeleton& skeleton_;
   std::string name_end_;
   std::vector<std::vector<std::size_t>> children_;

@@ -9,12 +9,6 @@ constexpr double kNear_m = 0.25, kFar_m = 15;
 constexpr double kSeenDrift = 0.9, kHiddenDrift = 0.6;  // share of its step that a joint keeps
 constexpr double kReachBefore_m = 0.95, kReachBehind_m = 0.6;
 
-std::array<Vec2, 4> corners_of(const SeenBody& seen) {
-  using enum BodyPoint;
-  const auto at = [&](BodyPoint point) { return Vec2{seen.at(point).x_px(), seen.at(point).y_px()}; };
-  return {at(kLeftShoulder), at(kRightShoulder), at(kLeftHip), at(kRightHip)};
-}
-
 double length(Vec2 a, Vec2 b) { return std::sqrt(square(a.x - b.x) + square(a.y - b.y)); }
 
 /// The parts of a person's depth that are possible around its trunk.
@@ -50,29 +44,6 @@ Places imagined(const FrameView& frame, const SeenBody& seen, const Points& poin
   complete(out);
   return out;
 }
-
-TrunkColor color_of(const FrameView& frame, const std::array<Vec2, 4>& corners) {
-  constexpr int kSide = 12;
-  double red = 0, green = 0, blue = 0;
-  int count = 0;
-  for (int j = 0; j < kSide; ++j)
-    for (int i = 0; i < kSide; ++i) {
-      const double a = 0.2 + 0.6 * i / (kSide - 1), b = 0.15 + 0.7 * j / (kSide - 1);
-      const double x = (1 - b) * ((1 - a) * corners[0].x + a * corners[1].x) + b * ((1 - a) * corners[2].x + a * corners[3].x);
-      const double y = (1 - b) * ((1 - a) * corners[0].y + a * corners[1].y) + b * ((1 - a) * corners[2].y + a * corners[3].y);
-      if (!(x >= 0 && y >= 0 && x <= frame.picture.width() - 1 && y <= frame.picture.height() - 1)) continue;
-      const Rgb8 pixel = frame.picture.at(static_cast<int>(y + 0.5), static_cast<int>(x + 0.5));
-      red += pixel.r;
-      green += pixel.g;
-      blue += pixel.b;
-      ++count;
-    }
-  const double sum = red + green + blue;
-  if (count < kSide || !(sum > 0)) return {};
-  return {red / sum, green / sum, sum / (3 * 255.0 * count), true};
-}
-
-Vec2 centre_of(const std::array<Vec2, 4>& corners) { return mean(mean(corners[0], corners[1]), mean(corners[2], corners[3])); }
 
 /// A hand that its network found far from where the body's network has it is another one.
 bool belongs(const SeenHand& hand, const Point& wrist, double px_per_m) {
@@ -122,6 +93,24 @@ TurnedSquare Body::expected_region(const FrameView& frame) const {
   return out;
 }
 
+Window Body::expected_box(const FrameView& frame) const {
+  constexpr double kAround_m = 0.1;
+  double x0 = 1e9, x1 = -1e9, y0 = 1e9, y1 = -1e9;
+  for (const JointId id : kFreeJoints) {
+    const Vec3 p = fitted_.places[id] + pace_;
+    if (p.z < kNear_m) continue;
+    const Vec2 at = frame.depth.geometry->project(p);
+    const double around = kAround_m * frame.depth.px_per_m(p.z);
+    x0 = std::min(x0, at.x - around);
+    x1 = std::max(x1, at.x + around);
+    y0 = std::min(y0, at.y - around);
+    y1 = std::max(y1, at.y + around);
+  }
+  if (x0 > x1) return {};
+  const auto whole = [](double px) { return static_cast<int>(std::clamp(px, -1e4, 1e4)); };
+  return {whole(x0), whole(y0), whole(x1) - whole(x0) + 1, whole(y1) - whole(y0) + 1};
+}
+
 double Body::unlike(const FrameView& frame, const SeenBody& seen) const {
   constexpr double kNear = 0.6, kNear_depth_m = 0.4, kColor = 0.08, kBright = 0.35, kMostMissed = 10;
   const auto corners = corners_of(seen);
@@ -159,11 +148,24 @@ void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hand
 
 void Body::predict(Scene& scene, double frame_s) const {
   constexpr double kMostSigma_m = 0.3, kAstray = 2;
+  Places ahead = fitted_.places;
+  for (const JointId id : kFreeJoints) {
+    const State& state = states_[id];
+    const double drift = state.seen ? kSeenDrift : missed_ > 0 ? 1 : kHiddenDrift;
+    ahead[id] = ahead[id] + drift * state.step;
+  }
+  // A hidden arm or leg goes along with the trunk.
+  const TrunkAxes now = trunk_axes(fitted_.places), next = trunk_axes(ahead);
+  for (const auto& limbs : {kArmChains, kLegChains})
+    for (const Limb& limb : limbs)
+      for (const JointId id : {limb[1], limb[2], limb[3]})
+        if (const State& state = states_[id]; state.hidden > 0 && missed_ == 0)
+          ahead[id] = next.in_rig(now.of(fitted_.places[id])) + kHiddenDrift * (state.step - pace_);
   for (const JointId id : kFreeJoints) {
     const State& state = states_[id];
     Expected& expected = scene.expected[id];
-    expected.p = fitted_.places[id] + (state.seen ? kSeenDrift : kHiddenDrift) * state.step;
-    // A hidden joint goes astray like a random walk.
+    expected.p = ahead[id];
+    // It goes astray like a random walk.
     const double unrest = unrest_m(id) * 30 * frame_s * (1 + 0.5 * std::min(missed_, 10));
     expected.sigma_m = std::min(unrest * std::sqrt(1.0 + kAstray * state.hidden), kMostSigma_m);
     if (age_ == 0) expected.sigma_m = state.sigma_m;
@@ -186,6 +188,8 @@ void Body::detect(const FrameView& frame, const SeenBody& seen, const Hands& han
   }
   const double px_per_m = frame.depth.px_per_m(trunk_z_m_);
   scene.points = points_of(seen, frame.model, frame.picture.size(), px_per_m, lengths_[Bone::kShoulders]);
+  for (const JointId id : kFreeJoints)
+    if (frame.is_covered(scene.points[id].at_px)) scene.points[id].hide();
   scene.across = across_of(seen, expected_trunk());
   for (const bool left : {true, false}) detect_hand(frame, hands.seen[left ? 0 : 1], left, scene);
   Places expected = fitted_.places;
@@ -238,11 +242,30 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     state.seen_before = state.seen;
     state.hidden = state.seen ? 0 : state.hidden + 1;
     const Vec3 off = p - scene.expected[id].p;
-    const double drift = state.seen ? kSeenDrift : kHiddenDrift;
-    state.step = was_hidden && state.seen ? Vec3{} : drift * state.step + kStepGain * off;
+    // What the network guesses of a hidden limb tells nothing of its speed.
+    if (was_hidden && state.seen)
+      state.step = {};
+    else if (state.seen || is_root(id))
+      state.step = (state.seen ? kSeenDrift : kHiddenDrift) * state.step + kStepGain * off;
+    else
+      state.step = pace_ + kHiddenDrift * (state.step - pace_);
     if (const double now = norm(state.step); now > kLongestStep_m) state.step = (kLongestStep_m / now) * state.step;
     state.sigma_m = fitted_.covariance[id].sigma_m() / std::sqrt(3.0);  // along each axis
   }
+  learn_pace();
+}
+
+void Body::learn_pace() {
+  using enum JointId;
+  constexpr double kGain = 0.2;
+  Vec3 sum;
+  int count = 0;
+  for (const JointId id : {kLeftShoulder, kRightShoulder, kLeftHip, kRightHip})
+    if (states_[id].seen) {
+      sum = sum + states_[id].step;
+      ++count;
+    }
+  if (count > 1) pace_ = (1 - kGain) * pace_ + (kGain / count) * sum;
 }
 
 void Body::learn(const Scene& scene) {
@@ -275,21 +298,28 @@ void Body::learn(const Scene& scene) {
     const Vec3 shoulders = middle(measured(kLeftShoulder), measured(kRightShoulder)),
                hips = middle(measured(kLeftHip), measured(kRightHip));
     lengths_.learn(Bone::kTrunk, distance(shoulders, hips), 1);
-    if (seen(kHead)) lengths_.learn(Bone::kNeckHead, distance(shoulders, measured(kHead)), 1);
+    if (seen(kHead)) {
+      lengths_.learn(Bone::kNeckHead, distance(shoulders, measured(kHead)), 1);
+      lengths_.learn(Bone::kHead, distance(fitted_.places[kNeck], fitted_.places[kHead]), 1);
+    }
     if (std::abs(scene.across.shoulders.z) < kFacing) map_.learn(scene.depth, trunk_axes(fitted_.places), fitted_.places);
   }
 }
 
-void Body::miss() {
+// Who walks behind somebody walks on.
+void Body::miss(bool covered) {
+  const double keeps = covered ? 0.97 : 0.8;
   ++missed_;
+  trunk_z_m_ += pace_.z;
   for (const JointId id : kFreeJoints) {
     State& state = states_[id];
-    state.step = kHiddenDrift * state.step;
-    fitted_.places[id] = fitted_.places[id] + state.step;
+    fitted_.places[id] = fitted_.places[id] + pace_;
+    state.step = keeps * pace_;
     state.seen = state.sure = state.seen_before = false;
     ++state.hidden;
     state.sigma_m = std::sqrt(square(state.sigma_m) + square(2 * unrest_m(id)));
   }
+  pace_ = keeps * pace_;
   complete(fitted_.places);
 }
 
@@ -321,7 +351,8 @@ void Body::publish(const FrameView& frame, Person& person) const {
   using enum JointId;
   // Equations know nothing of what is wrong in the same way in all frames. Hips are marked higher or lower on one person than
   // on another.
-  constexpr double kScale = 1.4, kHandScale = 1.15, kFloor_m = 0.006, kHipMark_m = 0.028, kLost_m = 0.45, kHandLost_m = 0.37;
+  constexpr double kScale = 1.4, kHandScale = 1.15, kFloor_m = 0.006, kHipMark_m = 0.028, kLost_m = 0.45, kHandLost_m = 0.37,
+                   kHeld_m = 0.07;
   const Places places = with_lengths(fitted_.places, lengths_);
   const auto fill = [&](JointId id, Vec3 p, const Covariance3& c, JointState state, Vec3 step) {
     Joint& joint = person.joints[index_of(id)];
@@ -337,7 +368,8 @@ void Body::publish(const FrameView& frame, Person& person) const {
     const State& state = states_[id];
     Covariance3 c = fitted_.covariance[id];
     if (!state.sure) {
-      const double grown = square(0.035 + 0.4 * std::min(state.hidden, 30) * frame.frame_s);
+      const bool held = is_root(id) && missed_ == 0;  // by the rest of the trunk
+      const double grown = square(std::min(0.035 + 0.4 * std::min(state.hidden, 30) * frame.frame_s, held ? kHeld_m : 1));
       c.xx += grown;
       c.yy += grown;
       c.zz += grown;

@@ -5,23 +5,12 @@
 #include <span>
 
 #include "duoptic/person.h"
+#include "duoptic/window.h"
 #include "trackers/body/fit.h"
+#include "trackers/body/frame_view.h"
+#include "trackers/body/seen_trunk.h"
 
 namespace duo::body {
-
-/// What a frame offers to all bodies.
-struct FrameView {
-  DepthView depth;
-  View<const Rgb8> picture;
-  double frame_s = 1.0 / 30;
-  BodyModel model = BodyModel::kLite;  // that marked the points
-};
-
-/// Mean colour of a trunk: shares of red and green, and how bright.
-struct TrunkColor {
-  double red = 1.0 / 3, green = 1.0 / 3, bright = 0;
-  bool known = false;
-};
 
 /// Follows one person: predict, detect, lift, choose, fit, learn.
 class Body {
@@ -33,6 +22,8 @@ class Body {
   Vec3 expected_trunk() const;
   /// Where to look for the body in the next frame after one that did not show it.
   TurnedSquare expected_region(const FrameView& frame) const;
+  /// Around the body in the picture, as expected in the next frame, and a hand's breadth more.
+  Window expected_box(const FrameView& frame) const;
   /// How unlike a seen body is: 0 the same, 1 hardly the same.
   double unlike(const FrameView& frame, const SeenBody& seen) const;
   /// Asks the detector for hands: where to look, this frame. None when the hand would be too small or is out of the picture.
@@ -43,8 +34,8 @@ class Body {
   };
   /// `nearer`: people before this one, who were tracked in this frame.
   void track(const FrameView& frame, const SeenBody& seen, const Hands& hands, std::span<const Places* const> nearer = {});
-  /// A frame in which nothing was seen of the person.
-  void miss();
+  /// A frame in which nothing was seen of the person, perhaps because somebody covers it.
+  void miss(bool covered);
 
   const Places& places() const { return fitted_.places; }
   const Lengths& lengths() const { return lengths_; }
@@ -62,6 +53,7 @@ class Body {
 
   explicit Body(double scale) : lengths_(scale) {}
   void predict(Scene& scene, double frame_s) const;
+  void learn_pace();
   void detect(const FrameView& frame, const SeenBody& seen, const Hands& hands, Scene& scene);
   void detect_hand(const FrameView& frame, const SeenHand* hand, bool left, Scene& scene);
   void lift(Scene& scene) const;
@@ -80,6 +72,7 @@ class Body {
   Vec2 region_from_px_;  // where its trunk was then
   TrunkColor color_;
   double trunk_z_m_ = 0;
+  Vec3 pace_;  // of the trunk's middle from frame to frame, as it walks
   int missed_ = 0, age_ = 0;
 };
 

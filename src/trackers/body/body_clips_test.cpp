@@ -3,12 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 
+#include "body/bone_turns.h"
 #include "duoptic/evaluation.h"
 #include "duoptic/pipeline.h"
 #include "duoptic/source.h"
 #include "duoptic/statistics.h"
+#include "sinks/motion_tracks.h"
 #include "tests/data.h"
 
 namespace duo {
@@ -49,6 +53,51 @@ struct Tally {
   }
 };
 
+/// The joints as files of motion give them back.
+struct Rebuilt {
+  std::vector<double> off_mm;            // of BVH's bones, whose lengths stay, from the tracker's joints
+  double most_degrees = 0;               // of VMC's turned bones from the tracker's
+  double least_norm = 1, most_norm = 1;  // of VMC's quaternions
+};
+
+Rebuilt rebuild(const std::vector<Person>& persons) {
+  Rebuilt out;
+  MotionTrack track(kBody, "");
+  for (std::size_t i = 0; i < persons.size(); ++i) track.add(i, persons[i]);
+  const auto poses = track.poses(persons.size());
+  std::vector<Vec3> offsets(kJointIds);
+  for (std::size_t j = 1; j < kJointIds; ++j) offsets[j] = track.offset_m(j);
+  BoneTurner avatar(kBody, BodyAxes::kLeftHanded);
+  for (std::size_t i = 0; i < persons.size(); ++i) {
+    const auto places = known_places(persons[i], axes_from_rig(Axes::kOpengl));
+    const auto in_avatar = known_places(persons[i], {{-1, 0, 0, 0, -1, 0, 0, 0, -1}});
+    const auto turns = in_avatar ? avatar.turn(*in_avatar) : std::nullopt;
+    if (!places || !turns) {
+      ADD_FAILURE() << "frame " << i << " has no pose";
+      continue;
+    }
+    std::vector<Vec3> at(kJointIds, poses[i].root_m);
+    std::vector<Mat3> whole = poses[i].turns, whole_in_avatar = *turns;
+    for (std::size_t j = 1; j < kJointIds; ++j) {
+      const auto parent = static_cast<std::size_t>(kBody.joints[j].parent);
+      at[j] = at[parent] + whole[parent] * offsets[j];
+      whole[j] = whole[parent] * whole[j];
+      whole_in_avatar[j] = whole_in_avatar[parent] * whole_in_avatar[j];
+      if (persons[i].joints[j].state == JointState::kLost) continue;
+      out.off_mm.push_back(1000 * norm(at[j] - (*places)[j]));
+      const Vec3 bone = normalized((*in_avatar)[j] - (*in_avatar)[parent]);
+      const Vec3 turned = whole_in_avatar[parent] * rest_direction(kBody.joints[j].id, BodyAxes::kLeftHanded);
+      const double degrees = std::atan2(norm(cross(bone, turned)), dot(bone, turned)) * 180 / std::numbers::pi;
+      out.most_degrees = std::max(out.most_degrees, degrees);
+      const auto q = quaternion((*turns)[j]);
+      const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+      out.least_norm = std::min(out.least_norm, length);
+      out.most_norm = std::max(out.most_norm, length);
+    }
+  }
+  return out;
+}
+
 class BodyClips : public testing::TestWithParam<BodyLimits> {};
 
 TEST_P(BodyClips, WithoutAClick) {
@@ -68,12 +117,14 @@ TEST_P(BodyClips, WithoutAClick) {
   ASSERT_TRUE(pipeline) << pipeline.error().what;
   const Mat3 rig_from_left = pipeline->header().rectified.rig_from_left;
   std::map<std::string_view, Tally> tallies;  // by the part, both sides
+  std::vector<Person> persons;
   for (const FrameTruth& frame : truth->frames) {
     const auto next = pipeline->next();
     ASSERT_TRUE(next && *next == Next::kNew);
     ASSERT_EQ(pipeline->people().size(), 1u) << "frame " << pipeline->tracked().number;
     const Person& person = pipeline->people()[0];
     EXPECT_EQ(person.id, 1u);
+    persons.push_back(person);
     for (std::size_t j = 0; j < kJointIds; ++j)
       if (frame[j])
         tallies[part_of(static_cast<JointId>(j))].add(*frame[j], person.find(static_cast<JointId>(j)), rig_from_left);
@@ -94,6 +145,11 @@ TEST_P(BodyClips, WithoutAClick) {
   EXPECT_GE(inside, 0.97 * known);
   for (const char* part : {"hand", "wrist", "elbow", "shoulder"})
     EXPECT_LE(tallies[part].bad, limits.arms_bad_percent / 100 * tallies[part].visible) << part;
+  Rebuilt rebuilt = rebuild(persons);
+  EXPECT_LT(quantile(rebuilt.off_mm, 0.95), 5);
+  EXPECT_LT(rebuilt.most_degrees, 1);
+  EXPECT_NEAR(rebuilt.least_norm, 1, 1e-9);
+  EXPECT_NEAR(rebuilt.most_norm, 1, 1e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rendered, BodyClips,

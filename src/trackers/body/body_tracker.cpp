@@ -9,11 +9,13 @@
 #include "detectors/small_hands.h"
 #include "duoptic/detector.h"
 #include "trackers/body/body.h"
+#include "trackers/body/uncover.h"
 
 namespace duo {
 namespace {
 
 using body::Body;
+using body::Uncover;
 
 constexpr std::array<const Skeleton*, 1> kBodies = {&kBody};
 constexpr std::size_t kMostPeople = 8;
@@ -34,14 +36,27 @@ class BodyTracker final : public Tracker {
   struct Tracked {
     std::uint32_t id = 0;
     Body body;
-    bool matched = false;
+    bool matched = false;        // with one whom the finder sees
+    Uncover* uncover = nullptr;  // while somebody is before or behind this person
+    bool covered = false;        // somebody is before
   };
+  /// A tracked person as this frame shows it.
+  struct Sight {
+    Tracked* who = nullptr;
+    const SeenBody* seen = nullptr;
+    const body::FrameView* frame = nullptr;
+    std::array<std::optional<std::size_t>, 2> hands = {};  // left, right: which of those looked at
+  };
+  /// Takes those who stand before somebody out of the frame that this one is looked for in.
+  void uncover(const body::FrameView& frame);
   /// Finds the tracked person that each seen one is, the most alike first.
   void match(const body::FrameView& frame, std::span<const SeenPerson> seen);
   void match(const body::FrameView& frame, std::span<const SeenPerson> seen, double most);
+  /// Those whom the finder sees, and those whom only their uncovered frames show.
+  void gather(const body::FrameView& frame, std::span<const SeenPerson> seen);
   /// Whether a body that nobody owns lies over one that somebody does: the same person, marked twice.
-  bool is_of_another(std::span<const SeenPerson> seen, std::size_t which) const;
-  void look_at_hands(const body::FrameView& frame, std::span<const SeenPerson> seen);
+  bool is_of_another(const body::FrameView& frame, std::span<const SeenPerson> seen, std::size_t which) const;
+  void look_at_hands();
   void publish(const body::FrameView& frame);
 
   std::optional<Lens> lens_;  // empty before prepare()
@@ -49,11 +64,12 @@ class BodyTracker final : public Tracker {
   std::unique_ptr<Detector> detector_;
   std::unique_ptr<PeopleFinder> finder_;
   std::vector<Tracked> tracked_;
-  std::vector<Tracked*> owners_;                                    // of each person seen
-  std::vector<std::array<std::optional<std::size_t>, 2>> hand_of_;  // by owner
-  std::vector<TurnedSquare> regions_;                               // of those who were missed
-  std::vector<std::size_t> order_;                                  // of persons seen who have an owner, the nearest first
+  std::vector<Tracked*> owners_;       // of each person seen
+  std::vector<Sight> sights_;          // the nearest first
+  std::vector<TurnedSquare> regions_;  // of those whom the finder does not follow
   std::vector<const body::Places*> nearer_;
+  std::array<Uncover, kMostPeople> uncovers_;
+  std::array<SeenBody, kMostPeople> behind_;  // of those who are covered
   std::vector<Look> looks_;
   std::vector<SeenHand> hands_;
   std::vector<Person> people_;
@@ -86,7 +102,7 @@ void BodyTracker::reset() {
   tracked_.reserve(kMostPeople);
   people_.clear();
   people_.reserve(kMostPeople);
-  order_.reserve(kMostPeople);
+  sights_.reserve(kMostPeople);
   nearer_.reserve(kMostPeople);
   if (detector_)
     finder_ = std::make_unique<PeopleFinder>(
@@ -125,66 +141,117 @@ void BodyTracker::match(const body::FrameView& frame, std::span<const SeenPerson
   }
 }
 
-bool BodyTracker::is_of_another(std::span<const SeenPerson> seen, std::size_t which) const {
+bool BodyTracker::is_of_another(const body::FrameView& frame, std::span<const SeenPerson> seen, std::size_t which) const {
   constexpr double kMost = 0.6;  // of the smaller box
   const Window& box = seen[which].box_px;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (i == which || owners_[i] == nullptr) continue;
-    const Window& other = seen[i].box_px;
+  const auto lies_over = [&](const Window& other) {
     const double width = std::min(box.x_end(), other.x_end()) - std::max(box.x, other.x);
     const double height = std::min(box.y_end(), other.y_end()) - std::max(box.y, other.y);
     const double least = std::min(double(box.width) * box.height, double(other.width) * other.height);
-    if (width > 0 && height > 0 && width * height > kMost * least) return true;
-  }
-  return false;
+    return width > 0 && height > 0 && width * height > kMost * least;
+  };
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (i != which && owners_[i] != nullptr && lies_over(seen[i].box_px)) return true;
+  return std::ranges::any_of(tracked_, [&](const Tracked& each) {
+    return each.uncover != nullptr && lies_over(each.body.expected_box(frame).within(frame.picture.size()));
+  });
 }
 
-void BodyTracker::look_at_hands(const body::FrameView& frame, std::span<const SeenPerson> seen) {
-  looks_.clear();
-  hand_of_.assign(seen.size(), {});
-  const bool left = frame_ % 2 == 0;  // the other hand in the next frame
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (owners_[i] == nullptr) continue;
-    if (const auto region = owners_[i]->body.hand_region(frame, seen[i].body, left)) {
-      hand_of_[i][left ? 0 : 1] = looks_.size();
-      looks_.push_back({frame.picture, *region});
+void BodyTracker::uncover(const body::FrameView& frame) {
+  constexpr double kApart_m = 0.25;
+  std::size_t used = 0;
+  for (Tracked& each : tracked_) {
+    each.uncover = nullptr;
+    each.covered = false;
+    const Window box = each.body.expected_box(frame);
+    const double z_m = each.body.expected_trunk().z;
+    for (const Tracked& other : tracked_) {
+      const double other_z_m = other.body.expected_trunk().z;
+      if (other.body.missed() > 0 || std::abs(other_z_m - z_m) < kApart_m) continue;
+      const Window beside = other.body.expected_box(frame);
+      // Who is not followed is looked for in a region that the other one may fill.
+      const int around = each.matched ? 0 : box.height / 2;
+      if (std::min(box.x_end(), beside.x_end()) + around < std::max(box.x, beside.x)) continue;
+      if (std::min(box.y_end(), beside.y_end()) < std::max(box.y, beside.y)) continue;
+      if (each.uncover == nullptr) {
+        each.uncover = &uncovers_[used++];
+        each.uncover->begin(frame);
+      }
+      const double between_m = (z_m + other_z_m) / 2;
+      if (other_z_m < z_m)
+        each.uncover->take_out_before(beside, between_m);
+      else
+        each.uncover->take_out_behind(beside, between_m);
+      each.covered = each.covered || other_z_m < z_m;
     }
+    if (each.uncover != nullptr) each.uncover->finish();
   }
+}
+
+void BodyTracker::gather(const body::FrameView& frame, std::span<const SeenPerson> seen) {
+  constexpr std::uint16_t kThere = 16384;  // a probability of 0.5
+  constexpr double kMostCovered = 0.7, kMostUnlike = 2.2;
+  sights_.clear();
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (owners_[i] != nullptr && owners_[i]->uncover == nullptr) sights_.push_back({owners_[i], &seen[i].body, &frame, {}});
+  std::size_t used = 0;
+  for (Tracked& each : tracked_) {
+    if (each.uncover == nullptr) continue;
+    const body::FrameView& uncovered = each.uncover->view();
+    SeenBody& behind = behind_[used++];
+    const Look look = {uncovered.picture, each.body.expected_region(frame)};
+    detector_->bodies({&look, 1}, {&behind, 1});
+    const auto plain = std::ranges::find(owners_, &each);
+    if (behind.score_q15 >= kThere && body::covered_share(uncovered, body::corners_of(behind)) < kMostCovered &&
+        each.body.unlike(uncovered, behind) < kMostUnlike)
+      sights_.push_back({&each, &behind, &uncovered, {}});
+    else if (plain != owners_.end() && !each.covered)
+      sights_.push_back({&each, &seen[static_cast<std::size_t>(plain - owners_.begin())].body, &uncovered, {}});
+  }
+  std::ranges::sort(sights_, {}, [](const Sight& s) { return std::pair(s.who->body.expected_trunk().z, s.who->id); });
+}
+
+void BodyTracker::look_at_hands() {
+  looks_.clear();
+  const bool left = frame_ % 2 == 0;  // the other hand in the next frame
+  for (Sight& sight : sights_)
+    if (const auto region = sight.who->body.hand_region(*sight.frame, *sight.seen, left)) {
+      sight.hands[left ? 0 : 1] = looks_.size();
+      looks_.push_back({sight.frame->picture, *region});
+    }
   hands_.resize(looks_.size());
   detector_->hands(looks_, hands_);
 }
 
 std::span<const Person> BodyTracker::track(const Frame& frame) {
   DUO_CHECK(finder_ != nullptr);
-  const body::FrameView view{{frame.disparity.d_q4, &setup_.rectified}, frame.color, setup_.frame_s, setup_.body_model};
+  const body::FrameView view{{frame.disparity.d_q4, &setup_.rectified}, frame.color, setup_.frame_s, setup_.body_model, {}};
+  uncover(view);
   regions_.clear();
   for (const Tracked& each : tracked_)
-    if (each.body.missed() > 0) regions_.push_back(each.body.expected_region(view));
+    if (!each.matched && each.uncover == nullptr) regions_.push_back(each.body.expected_region(view));
   const std::span<const SeenPerson> seen = finder_->follow(frame.color, regions_);
   match(view, seen);
   for (std::size_t i = 0; i < seen.size() && tracked_.size() < kMostPeople; ++i) {
-    if (owners_[i] != nullptr || is_of_another(seen, i)) continue;
+    if (owners_[i] != nullptr || is_of_another(view, seen, i)) continue;
     if (auto started = Body::start(view, seen[i].body)) {
-      tracked_.push_back({next_id_++, std::move(*started), true});
+      tracked_.push_back({next_id_++, std::move(*started), true, nullptr, false});
       owners_[i] = &tracked_.back();
     }
   }
-  look_at_hands(view, seen);
+  gather(view, seen);
+  look_at_hands();
   // The nearest first: what is behind them is theirs to hide.
-  order_.clear();
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    if (owners_[i] != nullptr) order_.push_back(i);
-  std::ranges::sort(order_, {}, [&](std::size_t i) { return std::pair(owners_[i]->body.expected_trunk().z, owners_[i]->id); });
   nearer_.clear();
-  for (const std::size_t i : order_) {
+  for (const Sight& sight : sights_) {
     Body::Hands hands;
     for (std::size_t s = 0; s < 2; ++s)
-      if (hand_of_[i][s]) hands.seen[s] = &hands_[*hand_of_[i][s]];
-    owners_[i]->body.track(view, seen[i].body, hands, nearer_);
-    nearer_.push_back(&owners_[i]->body.places());
+      if (sight.hands[s]) hands.seen[s] = &hands_[*sight.hands[s]];
+    sight.who->body.track(*sight.frame, *sight.seen, hands, nearer_);
+    nearer_.push_back(&sight.who->body.places());
   }
   for (Tracked& each : tracked_)
-    if (!each.matched) each.body.miss();
+    if (std::ranges::none_of(sights_, [&](const Sight& sight) { return sight.who == &each; })) each.body.miss(each.covered);
   constexpr int kForget = 75;  // frames
   std::erase_if(tracked_, [](const Tracked& each) { return each.body.missed() > kForget; });
   publish(view);

@@ -234,6 +234,48 @@ TEST(BodyTracker, BesideAMirrorThereAreTwoAndEachKeepsItsNumber) {
   }
 }
 
+// Somebody, who is the person's mirror image and 60 cm nearer, walks past: both keep their numbers, and of the one behind
+// nothing is seen on the one before.
+TEST(BodyTracker, WhoeverIsBehindSomebodyStaysBehind) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  const int width = person.rectified.size.width;
+  constexpr double kNearer = 1.45, kBetween_m = 1.65;
+  constexpr int kSteps = 34, kStep_px = 7, kPersonFrom_q4 = 235;
+  std::uint32_t behind = 0;
+  int together = 0;
+  bool back = false;
+  for (int i = 0; i < kSteps; ++i) {
+    const int there = i % (2 * kFrames);  // to and fro through the frames
+    const Frame& source = *person.frames[static_cast<std::size_t>(there < kFrames ? there : 2 * kFrames - 1 - there)];
+    const int right_px = (kSteps / 2 - i) * kStep_px;
+    const Frame frame = composed(source, [&](int x, int y) {
+      const int from_x = width - 1 - (x - right_px);
+      if (std::abs(from_x - width / 2) > 70) return FromPixel{x, y, 1};
+      const std::uint16_t q4 = source.disparity.d_q4.at(y, from_x);
+      return q4 != Disparity::kNone && q4 > kPersonFrom_q4 ? FromPixel{from_x, y, kNearer} : FromPixel{x, y, 1};
+    });
+    const auto people = tracker->track(frame);
+    ASSERT_LE(people.size(), 2u) << i;
+    together += people.size() == 2;
+    for (const Person& found : people) {
+      EXPECT_LE(found.id, 2u) << i;
+      const bool is_behind = found.find(JointId::kPelvis)->p_in_rig_m.z > kBetween_m;
+      if (i == 0 && is_behind) behind = found.id;
+      EXPECT_EQ(found.id == behind, is_behind) << i;
+      int seen = 0;
+      for (std::size_t j = 0; j < found.count(); ++j) {
+        if (found.joints[j].state != JointState::kSeen) continue;
+        ++seen;
+        EXPECT_EQ(found.joints[j].p_in_rig_m.z > kBetween_m, is_behind) << name_of(kBody.joints[j].id) << " in frame " << i;
+      }
+      back = is_behind && seen > 12;
+    }
+  }
+  EXPECT_EQ(together, kSteps);
+  EXPECT_TRUE(back);
+}
+
 TEST(BodyTracker, OfAPersonHalfAMetreAwayOnlyWhatIsInThePictureIsSeen) {
   const RenderedPerson& person = RenderedPerson::get();
   const auto tracker = body_tracker(person.rig, person.rectified, 1);

@@ -1,169 +1,24 @@
 #include "trackers/body/choose.h"
 
 #include <algorithm>
-#include <span>
+
+#include "trackers/body/candidates.h"
 
 namespace duo::body {
 namespace {
 
-// Scores are log likelihoods, up to a constant.
-constexpr double kHidden = -2.5, kHiddenButVisible = -1.5, kHiddenButHandSeen = -4, kHandAbsent = -1, kHandOutside = -2.5;
-constexpr double kFreeSpace = -6, kIsTrunk = -7, kUnseen = -2, kInTrunk = -4, kSameSurface = -6;
-constexpr double kLengthSigma_m = 0.025, kMostLength = 6, kMostExpectedRoot = 12, kMostExpected = 4, kMostExpectedEnd = 3;
-constexpr double kDepthSigma_px = 0.35;
-
-struct Candidate {
-  Vec3 p;
-  double score = 0;
-  double skin_z_m = 0;    // of its surface; 0: hidden
-  bool doubtful = false;  // its surface may be the trunk's
-
-  bool hidden() const { return skin_z_m == 0; }
-};
-
-struct Candidates {
-  std::array<Candidate, 24> all = {};
-  std::size_t count = 0;
-  void add(const Candidate& candidate) {
-    if (count < all.size()) all[count++] = candidate;
-  }
-  std::span<const Candidate> get() const { return {all.data(), count}; }
-};
-
-/// About ln(share), without a library whose last bits differ from processor to processor.
-double log_share(double share) { return 2 * (share - 1) / (share + 1) * 1.3; }
-
-/// 0 up to `low`, 1 from `high` on.
-double share_of(double value, double low, double high) { return std::clamp((value - low) / (high - low), 0.0, 1.0); }
-
-double capped(double distance, double sigma, double most) { return -std::min(square(distance / sigma) / 2, most); }
-
-double expected_score(const Expected& expected, Vec3 p, double most) {
-  const double sigma = expected.sigma_m + 0.02;
-  return capped(distance(expected.p, p), sigma, most / (1 + 0.5 * expected.hidden));
-}
-
-double length_score(const Scene& scene, Bone bone, Vec3 a, Vec3 b) {
-  const double sigma =
-      kLengthSigma_m + scene.lengths->sigma_m(bone) + 0.3 * scene.depth.m_per_px(std::max(b.z, 0.3)) * kDepthSigma_px;
-  return capped(distance(a, b) - (*scene.lengths)[bone], sigma, kMostLength);
-}
-
-Vec3 on_ray(const Scene& scene, JointId id, double z) {
-  return scene.depth.geometry->unproject(scene.points[id].at_px, std::max(z, 0.2));
-}
-
-bool is_arm(JointId id) {
-  return (id >= JointId::kLeftElbow && id <= JointId::kLeftHand) || (id >= JointId::kRightElbow && id <= JointId::kRightHand);
-}
-
-/// A hidden joint has something before it.
-double free_space_score(const Scene& scene, JointId id, Vec3 p) {
-  constexpr double kClose_m = 0.03;
-  const Surfaces& surfaces = scene.surfaces[id];
-  if (surfaces.count == 0 || !scene.points[id].inside) return 0;
-  return surfaces.all[0].z_m > p.z + kClose_m ? kFreeSpace : 0;
-}
-
-/// A hidden arm is behind the trunk or beside it, not in it.
-double inside_trunk_score(const Scene& scene, JointId id, Vec3 p) {
-  constexpr double kBehindPlane_m = 0.24;  // of the shoulders' width
-  if (!is_arm(id)) return 0;
-  const auto height = scene.map->height_m(scene.trunk, p, scene.width_m());
-  if (!height) return 0;
-  const double above = scene.trunk.of(p).z, behind = kBehindPlane_m * scene.width_m();
-  const bool front = dot(scene.trunk.front, scene.trunk.shoulders) < 0;
-  return front ? (above < *height && above > -behind ? kInTrunk : 0) : (above > *height && above < behind ? kInTrunk : 0);
-}
-
-double hidden_score(const Scene& scene, JointId id) {
-  double score = kHidden;
-  score += kHiddenButVisible * share_of(scene.points[id].visibility, 0.6, 0.95);
-  const bool left = is_left(id);
-  const bool of_hand =
-      id == JointId::kLeftHand || id == JointId::kRightHand || id == JointId::kLeftWrist || id == JointId::kRightWrist;
-  if (of_hand && scene.hands[left ? 0 : 1] == HandSight::kSeen) score += kHiddenButHandSeen;
-  return score;
-}
-
-/// How likely a surface over the trunk is the trunk's own, 0 .. 1.
-double trunk_share(const Scene& scene, JointId id, double skin_z) {
-  constexpr double kProud_m = 0.025, kBelow_m = 0.04, kBeforePlane_m = 0.08, kNoise_px = 0.25;
-  if (!is_arm(id)) return 0;
-  const HandSight hand = scene.hands[is_left(id) ? 0 : 1];
-  const bool elbow = id == JointId::kLeftElbow || id == JointId::kRightElbow;
-  if (hand == HandSight::kSeen && !elbow) return 0;
-  const Vec3 skin = on_ray(scene, id, skin_z);
-  const auto height = scene.map->height_m(scene.trunk, skin, scene.width_m());
-  if (!height) return 0;
-  const bool front = dot(scene.trunk.front, scene.trunk.shoulders) < 0;
-  const double above = scene.trunk.of(skin).z, proud = front ? above - *height : *height - above;
-  const double noise = kNoise_px * scene.depth.m_per_px(skin_z);
-  if (hand == HandSight::kAbsent && !elbow && proud > -kBelow_m && (front ? above : -above) < kBeforePlane_m) return 1;
-  if (proud > kProud_m + noise || proud < -kBelow_m - noise) return 0;
-  // Of an elbow beside the trunk the network knows whether it is seen; of a hand behind the back it does not.
-  return elbow ? 1 - share_of(scene.points[id].visibility, 0.6, 0.85) : 1;
-}
-
-double z_sigma_m(const Scene& scene, const Candidate& c) {
-  constexpr double kRadiusSigma_m = 0.012;
-  return std::sqrt(square(kRadiusSigma_m) + square(kDepthSigma_px * scene.depth.m_per_px(c.p.z)));
-}
-
 Choice choice_of(const Scene& scene, const Candidate& c) {
   const bool on = !c.hidden() && !c.doubtful;
-  return {c.p, on, on ? z_sigma_m(scene, c) : 0};
+  return {c.p, on, on ? z_sigma_m(scene, c.p.z) : 0};
 }
 
-/// What the network of hands says against a hand on a surface.
-double sight_score(const Scene& scene, JointId id) {
-  const bool hand = id == JointId::kLeftHand || id == JointId::kRightHand;
-  const bool wrist = id == JointId::kLeftWrist || id == JointId::kRightWrist;
-  if (!hand && !wrist) return 0;
-  const HandSight sight = scene.hands[is_left(id) ? 0 : 1];
-  if (sight == HandSight::kOutside && hand) return kHandOutside;
-  return sight == HandSight::kAbsent ? kHandAbsent : 0;
-}
-
-/// Whether a place on a surface is on somebody else, who stands before this person, and is not where the joint is expected.
-bool is_of_another(const Scene& scene, JointId id, Vec3 skin) {
-  constexpr double kOwn_m = 0.12;
-  if (scene.nearer.empty() || distance(scene.expected[id].p, skin) < kOwn_m) return false;
-  return std::ranges::any_of(scene.nearer, [&](const Places* other) {
-    return std::ranges::any_of(kBody.joints, [&](const JointDef& joint) {
-      if (joint.parent < 0) return false;
-      const JointId from = kBody.joints[static_cast<std::size_t>(joint.parent)].id;
-      return to_segment(skin, (*other)[from], (*other)[joint.id]) < joint.radius_m;
-    });
-  });
-}
-
-void add_surfaces(const Scene& scene, JointId id, double most_expected, Candidates& out) {
-  bool nearer = false;  // something before the trunk was met
-  for (const Surface& surface : scene.surfaces[id].get()) {
-    Candidate c;
-    c.p = on_ray(scene, id, surface.z_m + depth_of_joint_m(scene, id, surface.z_m));
-    c.skin_z_m = surface.z_m;
-    c.score = log_share(surface.share) +
-              expected_score(scene.expected[id], c.p, most_expected / (1 + 0.5 * scene.expected[id].hidden));
-    c.score += sight_score(scene, id) + kUnseen * (1 - share_of(scene.points[id].visibility, 0.35, 0.7));
-    if (is_of_another(scene, id, on_ray(scene, id, surface.z_m))) c.score += kSameSurface;
-    if (const double trunk = trunk_share(scene, id, surface.z_m); trunk > 0) {
-      if (nearer) continue;
-      c.doubtful = trunk > 0.5;
-      c.score += trunk * kIsTrunk;
-    } else {
-      nearer = true;
-    }
-    out.add(c);
-  }
-}
-
-void add_hidden(const Scene& scene, JointId id, Vec3 p, double most_expected, Candidates& out) {
-  out.add({p,
-           hidden_score(scene, id) + free_space_score(scene, id, p) + inside_trunk_score(scene, id, p) +
-               expected_score(scene.expected[id], p, most_expected),
-           0, false});
+/// How well a place of a hip goes with the surfaces that the knee may be on, a thigh's length away. Of who sits, the thighs
+/// hide the hips.
+double knee_score(const Scene& scene, const Candidates& knees, Vec3 hip) {
+  constexpr double kHiddenKnee = -6;
+  double best = kHiddenKnee;
+  for (const Candidate& knee : knees.get()) best = std::max(best, knee.score + length_score(scene, Bone::kThigh, hip, knee.p));
+  return best;
 }
 
 /// The best pair of left and right at the ends of a line across the trunk.
@@ -180,6 +35,15 @@ void choose_line(const Scene& scene, JointId left, JointId right, Bone bone, Vec
                  sides[s]);
     add_hidden(scene, ids[s], on_ray(scene, ids[s], scene.expected[ids[s]].p.z), kMostExpectedRoot, sides[s]);
   }
+  if (bone == Bone::kHips)
+    for (std::size_t s = 0; s < 2; ++s) {
+      const JointId knee = kLegChains[s][1];
+      Candidates knees;
+      add_surfaces(scene, knee, kMostExpected, knees);
+      for (const Candidate& k : knees.get())
+        add_sphere(scene, ids[s], k.p, (*scene.lengths)[Bone::kThigh], kMostExpectedRoot, sides[s]);
+      for (std::size_t i = 0; i < sides[s].count; ++i) sides[s].all[i].score += knee_score(scene, knees, sides[s].all[i].p);
+    }
   // Head on, depth tells how the line is turned; from the side the network does.
   const double turned = std::min(std::abs(across.z), 1.0);
   const double line_sigma = width * (0.35 - 0.17 * turned) + 0.3 * scene.depth.m_per_px(scene.trunk_z_m) * kDepthSigma_px;
@@ -231,21 +95,6 @@ struct Taken {
   }
 };
 
-/// Places on a joint's ray that lie a bone's length from its parent.
-void add_sphere(const Scene& scene, JointId id, Vec3 parent, double length, double most, Candidates& out) {
-  const Vec3 ray = on_ray(scene, id, 1);
-  const double a = dot(ray, ray), b = dot(ray, parent), c = dot(parent, parent) - square(length), root = b * b - a * c;
-  if (root < 0) {
-    add_hidden(scene, id, parent + (length / std::max(distance((b / a) * ray, parent), 1e-6)) * ((b / a) * ray - parent), most,
-               out);
-    return;
-  }
-  for (const double sign : {-1.0, 1.0}) {
-    const double z = (b + sign * std::sqrt(root)) / a;
-    if (z > 0.2) add_hidden(scene, id, z * ray, most, out);
-  }
-}
-
 LimbChoice choose_limb(const Scene& scene, const Limb& limb, const LimbBones& bones, Vec3 root, const Taken& taken) {
   std::array<Candidates, 3> nodes;
   for (std::size_t n = 0; n < 3; ++n) {
@@ -255,7 +104,8 @@ LimbChoice choose_limb(const Scene& scene, const Limb& limb, const LimbBones& bo
     for (std::size_t i = 0; i < nodes[n].count; ++i)
       if (taken.has(scene, nodes[n].all[i])) nodes[n].all[i].score += kSameSurface;
     add_hidden(scene, id, on_ray(scene, id, scene.expected[id].p.z), most, nodes[n]);
-    add_hidden(scene, id, scene.expected[id].p, most, nodes[n]);
+    // The network guesses well how hidden legs walk, and badly where an arm behind the back is.
+    if (is_arm(id)) add_hidden(scene, id, scene.expected[id].p, most, nodes[n]);
     if (n == 0) {
       add_sphere(scene, id, root, (*scene.lengths)[bones.bones[0]], most, nodes[0]);
     } else {
@@ -333,56 +183,6 @@ void choose_head(const Scene& scene, Choices& out) {
 }
 
 }  // namespace
-
-double depth_of_joint_m(JointId id, double width_m, double away) {
-  using enum JointId;
-  switch (id) {
-    case kLeftShoulder:
-    case kRightShoulder:
-      return 0.185 * width_m + 0.045 * away;
-    case kLeftHip:
-    case kRightHip:
-      return 0.37 * width_m + 0.03 * away;
-    case kHead:
-      return 0.109;
-    case kLeftElbow:
-    case kRightElbow:
-      return 0.051;
-    case kLeftWrist:
-    case kRightWrist:
-      return 0.021;
-    case kLeftHand:
-    case kRightHand:
-      return 0.013;
-    case kLeftKnee:
-    case kRightKnee:
-      return 0.068;
-    case kLeftAnkle:
-    case kRightAnkle:
-      return 0.054;
-    default:
-      return 0.04;
-  }
-}
-
-double depth_of_joint_m(const Scene& scene, JointId id, double skin_z) {
-  const double line = is_hip(id) ? scene.across.hips.z : scene.across.shoulders.z;
-  const double behind = depth_of_joint_m(id, scene.width_m(), is_left(id) ? line : -line);
-  return is_hip(id) || is_shoulder(id) ? behind : behind - DepthView::kThin_px * scene.depth.m_per_px(skin_z);
-}
-
-double half_window_m(JointId id) {
-  using enum JointId;
-  switch (id) {
-    case kLeftWrist:
-    case kRightWrist:
-    case kLeftHand:
-    case kRightHand:
-      return 0.035;
-    default:
-      return 0.05;
-  }
-}
 
 void choose(Scene& scene, Choices& out) {
   using enum JointId;

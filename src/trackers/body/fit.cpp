@@ -190,15 +190,19 @@ class Terms {
 }  // namespace
 
 Places with_lengths(const Places& places, const Lengths& lengths) {
+  using enum JointId;
   Places out = places;
-  const auto widen = [&](JointId left, JointId right, Bone bone) {
-    const Vec3 centre = middle(places[left], places[right]), across = places[left] - places[right];
+  const Vec3 chest = middle(places[kLeftShoulder], places[kRightShoulder]),
+             pelvis = middle(places[kLeftHip], places[kRightHip]);
+  const Vec3 up = chest - pelvis, longer = (0.5 * (lengths[Bone::kTrunk] / std::max(norm(up), 1e-6) - 1)) * up;
+  const auto widen = [&](JointId left, JointId right, Bone bone, Vec3 centre) {
+    const Vec3 across = places[left] - places[right];
     const Vec3 half = (0.5 * lengths[bone] / std::max(norm(across), 1e-6)) * across;
     out[left] = centre + half;
     out[right] = centre - half;
   };
-  widen(JointId::kLeftShoulder, JointId::kRightShoulder, Bone::kShoulders);
-  widen(JointId::kLeftHip, JointId::kRightHip, Bone::kHips);
+  widen(kLeftShoulder, kRightShoulder, Bone::kShoulders, chest + longer);
+  widen(kLeftHip, kRightHip, Bone::kHips, pelvis - longer);
   const auto follow = [&](const Limb& limb, const std::array<Bone, 3>& bones) {
     for (std::size_t n = 0; n < bones.size(); ++n) {
       const Vec3 way = places[limb[n + 1]] - places[limb[n]];
@@ -208,6 +212,8 @@ Places with_lengths(const Places& places, const Lengths& lengths) {
   for (const Limb& arm : kArmChains) follow(arm, {Bone::kUpperArm, Bone::kForearm, Bone::kPalm});
   for (const Limb& leg : kLegChains) follow(leg, {Bone::kThigh, Bone::kShin, Bone::kFoot});
   complete(out);
+  const Vec3 head = out[kHead] - out[kNeck];
+  out[kHead] = out[kNeck] + (lengths[Bone::kHead] / std::max(norm(head), 1e-6)) * head;
   return out;
 }
 

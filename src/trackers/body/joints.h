@@ -47,6 +47,14 @@ constexpr bool is_left(JointId id) {
   return (id >= JointId::kLeftShoulder && id <= JointId::kLeftHand) || (id >= JointId::kLeftHip && id <= JointId::kLeftFoot);
 }
 constexpr bool is_shoulder(JointId id) { return id == JointId::kLeftShoulder || id == JointId::kRightShoulder; }
+/// Elbow, wrist or hand.
+constexpr bool is_arm(JointId id) {
+  return (id >= JointId::kLeftElbow && id <= JointId::kLeftHand) || (id >= JointId::kRightElbow && id <= JointId::kRightHand);
+}
+/// Of the trunk or the head: no limb carries it.
+constexpr bool is_root(JointId id) {
+  return is_shoulder(id) || id == JointId::kLeftHip || id == JointId::kRightHip || id == JointId::kHead;
+}
 constexpr bool is_hip(JointId id) { return id == JointId::kLeftHip || id == JointId::kRightHip; }
 
 inline Vec2 mean(Vec2 a, Vec2 b) { return {(a.x + b.x) / 2, (a.y + b.y) / 2}; }

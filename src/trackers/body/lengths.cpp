@@ -7,7 +7,7 @@ namespace duo::body {
 namespace {
 
 /// Of adults of 1.7 m: sites on the joints' centres.
-constexpr std::array<double, kBones> kAdult_m = {0.345, 0.21, 0.465, 0.252, 0.238, 0.068, 0.405, 0.415, 0.16, 0.285};
+constexpr std::array<double, kBones> kAdult_m = {0.345, 0.21, 0.465, 0.252, 0.238, 0.068, 0.405, 0.415, 0.16, 0.285, 0.18};
 constexpr double kMost = 0.15;        // share by which a length may differ from the prior, scaled
 constexpr double kPriorWeight = 6;    // samples that the prior counts as
 constexpr double kPriorSigma = 0.08;  // share

@@ -8,13 +8,25 @@
 
 namespace duo::body {
 
-enum class Bone : std::uint8_t { kShoulders, kHips, kTrunk, kUpperArm, kForearm, kPalm, kThigh, kShin, kFoot, kNeckHead };
-inline constexpr std::size_t kBones = 10;
+enum class Bone : std::uint8_t {
+  kShoulders,
+  kHips,
+  kTrunk,
+  kUpperArm,
+  kForearm,
+  kPalm,
+  kThigh,
+  kShin,
+  kFoot,
+  kNeckHead,
+  kHead
+};
+inline constexpr std::size_t kBones = 11;
 
 /// Lengths of one person.
 ///
 /// Units  metres; trunk: between the middles of shoulders and hips; palm: from the wrist to its centre; neck_head: from the
-///        shoulders' middle to the head's centre
+///        shoulders' middle to the head's centre; head: from the neck to the same
 class Lengths {
  public:
   Lengths();

@@ -1,6 +1,8 @@
 // Where the joints are in the picture, by the detector's points.
 #pragma once
 
+#include <algorithm>
+
 #include "duoptic/detector.h"
 #include "duoptic/image.h"
 #include "trackers/body/joints.h"
@@ -15,6 +17,13 @@ struct Point {
   double sigma_px = 0;
   double visibility = 0;
   bool inside = false;  // in the picture
+
+  /// Somebody nearer stands before it: the network only guesses where it is.
+  void hide() {
+    constexpr double kHidden = 0.1, kLessSharp = 3;
+    if (visibility > kHidden) sigma_px *= kLessSharp;
+    visibility = std::min(visibility, kHidden);
+  }
 };
 using Points = PerJoint<Point>;
 

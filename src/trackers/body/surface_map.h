@@ -21,6 +21,8 @@ struct TrunkAxes {
     const Vec3 q = p - shoulders;
     return {dot(q, across), dot(q, down), dot(q, front)};
   }
+  /// Back again.
+  Vec3 in_rig(Vec3 in_trunk) const { return shoulders + in_trunk.x * across + in_trunk.y * down + in_trunk.z * front; }
 };
 TrunkAxes trunk_axes(const Places& joints);
 

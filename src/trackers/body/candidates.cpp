@@ -1,0 +1,201 @@
+#include "trackers/body/candidates.h"
+
+namespace duo::body {
+namespace {
+
+constexpr double kHidden = -2.5, kHiddenButVisible = -1.5, kHiddenButHandSeen = -4, kHandAbsent = -1, kHandOutside = -2.5;
+constexpr double kFreeSpace = -6, kIsTrunk = -7, kUnseen = -2, kInTrunk = -4;
+
+/// About ln(share), without a library whose last bits differ from processor to processor.
+double log_share(double share) { return 2 * (share - 1) / (share + 1) * 1.3; }
+
+/// 0 up to `low`, 1 from `high` on.
+double share_of(double value, double low, double high) { return std::clamp((value - low) / (high - low), 0.0, 1.0); }
+
+double expected_score(const Expected& expected, Vec3 p, double most) {
+  const double sigma = expected.sigma_m + 0.02;
+  return capped(distance(expected.p, p), sigma, most / (1 + 0.5 * expected.hidden));
+}
+
+/// A hidden joint has something before it.
+double free_space_score(const Scene& scene, JointId id, Vec3 p) {
+  constexpr double kClose_m = 0.03;
+  const Surfaces& surfaces = scene.surfaces[id];
+  if (surfaces.count == 0 || !scene.points[id].inside) return 0;
+  return surfaces.all[0].z_m > p.z + kClose_m ? kFreeSpace : 0;
+}
+
+/// A hidden arm is behind the trunk or beside it, not in it.
+double inside_trunk_score(const Scene& scene, JointId id, Vec3 p) {
+  constexpr double kBehindPlane_m = 0.24;  // of the shoulders' width
+  if (!is_arm(id)) return 0;
+  const auto height = scene.map->height_m(scene.trunk, p, scene.width_m());
+  if (!height) return 0;
+  const double above = scene.trunk.of(p).z, behind = kBehindPlane_m * scene.width_m();
+  const bool front = dot(scene.trunk.front, scene.trunk.shoulders) < 0;
+  return front ? (above < *height && above > -behind ? kInTrunk : 0) : (above > *height && above < behind ? kInTrunk : 0);
+}
+
+double hidden_score(const Scene& scene, JointId id) {
+  double score = kHidden;
+  score += kHiddenButVisible * share_of(scene.points[id].visibility, 0.6, 0.95);
+  const bool left = is_left(id);
+  const bool of_hand =
+      id == JointId::kLeftHand || id == JointId::kRightHand || id == JointId::kLeftWrist || id == JointId::kRightWrist;
+  if (of_hand && scene.hands[left ? 0 : 1] == HandSight::kSeen) score += kHiddenButHandSeen;
+  return score;
+}
+
+/// How likely a surface over the trunk is the trunk's own, 0 .. 1.
+double trunk_share(const Scene& scene, JointId id, double skin_z) {
+  constexpr double kProud_m = 0.025, kBelow_m = 0.04, kBeforePlane_m = 0.08, kNoise_px = 0.25;
+  if (!is_arm(id)) return 0;
+  const HandSight hand = scene.hands[is_left(id) ? 0 : 1];
+  const bool elbow = id == JointId::kLeftElbow || id == JointId::kRightElbow;
+  if (hand == HandSight::kSeen && !elbow) return 0;
+  const Vec3 skin = on_ray(scene, id, skin_z);
+  const auto height = scene.map->height_m(scene.trunk, skin, scene.width_m());
+  if (!height) return 0;
+  const bool front = dot(scene.trunk.front, scene.trunk.shoulders) < 0;
+  const double above = scene.trunk.of(skin).z, proud = front ? above - *height : *height - above;
+  const double noise = kNoise_px * scene.depth.m_per_px(skin_z);
+  if (hand == HandSight::kAbsent && !elbow && proud > -kBelow_m && (front ? above : -above) < kBeforePlane_m) return 1;
+  if (proud > kProud_m + noise || proud < -kBelow_m - noise) return 0;
+  // Of an elbow beside the trunk the network knows whether it is seen; of a hand behind the back it does not.
+  return elbow ? 1 - share_of(scene.points[id].visibility, 0.6, 0.85) : 1;
+}
+
+/// What the network of hands says against a hand on a surface.
+double sight_score(const Scene& scene, JointId id) {
+  const bool hand = id == JointId::kLeftHand || id == JointId::kRightHand;
+  const bool wrist = id == JointId::kLeftWrist || id == JointId::kRightWrist;
+  if (!hand && !wrist) return 0;
+  const HandSight sight = scene.hands[is_left(id) ? 0 : 1];
+  if (sight == HandSight::kOutside && hand) return kHandOutside;
+  return sight == HandSight::kAbsent ? kHandAbsent : 0;
+}
+
+/// Whether a place on a surface is on somebody else, who stands before this person, and is not where the joint is expected.
+bool is_of_another(const Scene& scene, JointId id, Vec3 skin) {
+  constexpr double kOwn_m = 0.12;
+  if (scene.nearer.empty() || distance(scene.expected[id].p, skin) < kOwn_m) return false;
+  return std::ranges::any_of(scene.nearer, [&](const Places* other) {
+    return std::ranges::any_of(kBody.joints, [&](const JointDef& joint) {
+      if (joint.parent < 0) return false;
+      const JointId from = kBody.joints[static_cast<std::size_t>(joint.parent)].id;
+      return to_segment(skin, (*other)[from], (*other)[joint.id]) < joint.radius_m;
+    });
+  });
+}
+
+}  // namespace
+
+double length_score(const Scene& scene, Bone bone, Vec3 a, Vec3 b) {
+  constexpr double kLengthSigma_m = 0.025, kMostLength = 6;
+  const double sigma =
+      kLengthSigma_m + scene.lengths->sigma_m(bone) + 0.3 * scene.depth.m_per_px(std::max(b.z, 0.3)) * kDepthSigma_px;
+  return capped(distance(a, b) - (*scene.lengths)[bone], sigma, kMostLength);
+}
+
+Vec3 on_ray(const Scene& scene, JointId id, double z) {
+  return scene.depth.geometry->unproject(scene.points[id].at_px, std::max(z, 0.2));
+}
+
+double z_sigma_m(const Scene& scene, double z) {
+  constexpr double kRadiusSigma_m = 0.012;
+  return std::sqrt(square(kRadiusSigma_m) + square(kDepthSigma_px * scene.depth.m_per_px(z)));
+}
+
+void add_surfaces(const Scene& scene, JointId id, double most_expected, Candidates& out) {
+  bool nearer = false;  // something before the trunk was met
+  for (const Surface& surface : scene.surfaces[id].get()) {
+    Candidate c;
+    c.p = on_ray(scene, id, surface.z_m + depth_of_joint_m(scene, id, surface.z_m));
+    c.skin_z_m = surface.z_m;
+    c.score = log_share(surface.share) +
+              expected_score(scene.expected[id], c.p, most_expected / (1 + 0.5 * scene.expected[id].hidden));
+    c.score += sight_score(scene, id) + kUnseen * (1 - share_of(scene.points[id].visibility, 0.35, 0.7));
+    if (is_of_another(scene, id, on_ray(scene, id, surface.z_m))) c.score += kSameSurface;
+    if (const double trunk = trunk_share(scene, id, surface.z_m); trunk > 0) {
+      if (nearer) continue;
+      c.doubtful = trunk > 0.5;
+      c.score += trunk * kIsTrunk;
+    } else {
+      nearer = true;
+    }
+    out.add(c);
+  }
+}
+
+void add_hidden(const Scene& scene, JointId id, Vec3 p, double most_expected, Candidates& out) {
+  out.add({p,
+           hidden_score(scene, id) + free_space_score(scene, id, p) + inside_trunk_score(scene, id, p) +
+               expected_score(scene.expected[id], p, most_expected),
+           0, false});
+}
+
+void add_sphere(const Scene& scene, JointId id, Vec3 parent, double length, double most, Candidates& out) {
+  const Vec3 ray = on_ray(scene, id, 1);
+  const double a = dot(ray, ray), b = dot(ray, parent), c = dot(parent, parent) - square(length), root = b * b - a * c;
+  if (root < 0) {
+    add_hidden(scene, id, parent + (length / std::max(distance((b / a) * ray, parent), 1e-6)) * ((b / a) * ray - parent), most,
+               out);
+    return;
+  }
+  for (const double sign : {-1.0, 1.0}) {
+    const double z = (b + sign * std::sqrt(root)) / a;
+    if (z > 0.2) add_hidden(scene, id, z * ray, most, out);
+  }
+}
+
+double depth_of_joint_m(JointId id, double width_m, double away) {
+  using enum JointId;
+  switch (id) {
+    case kLeftShoulder:
+    case kRightShoulder:
+      return 0.185 * width_m + 0.045 * away;
+    case kLeftHip:
+    case kRightHip:
+      return 0.37 * width_m + 0.03 * away;
+    case kHead:
+      return 0.109;
+    case kLeftElbow:
+    case kRightElbow:
+      return 0.051;
+    case kLeftWrist:
+    case kRightWrist:
+      return 0.021;
+    case kLeftHand:
+    case kRightHand:
+      return 0.013;
+    case kLeftKnee:
+    case kRightKnee:
+      return 0.068;
+    case kLeftAnkle:
+    case kRightAnkle:
+      return 0.054;
+    default:
+      return 0.04;
+  }
+}
+
+double depth_of_joint_m(const Scene& scene, JointId id, double skin_z) {
+  const double line = is_hip(id) ? scene.across.hips.z : scene.across.shoulders.z;
+  const double behind = depth_of_joint_m(id, scene.width_m(), is_left(id) ? line : -line);
+  return is_hip(id) || is_shoulder(id) ? behind : behind - DepthView::kThin_px * scene.depth.m_per_px(skin_z);
+}
+
+double half_window_m(JointId id) {
+  using enum JointId;
+  switch (id) {
+    case kLeftWrist:
+    case kRightWrist:
+    case kLeftHand:
+    case kRightHand:
+      return 0.035;
+    default:
+      return 0.05;
+  }
+}
+
+}  // namespace duo::body

@@ -1,0 +1,54 @@
+#include "trackers/body/seen_trunk.h"
+
+namespace duo::body {
+namespace {
+
+/// `across` from left (0) to right (1), `down` from the shoulders (0) to the hips (1).
+Vec2 place_in(const TrunkCorners& corners, double across, double down) {
+  const auto along = [](Vec2 from, Vec2 to, double t) {
+    return Vec2{from.x + t * (to.x - from.x), from.y + t * (to.y - from.y)};
+  };
+  return along(along(corners[0], corners[1], across), along(corners[2], corners[3], across), down);
+}
+
+}  // namespace
+
+TrunkCorners corners_of(const SeenBody& seen) {
+  using enum BodyPoint;
+  const auto at = [&](BodyPoint point) { return Vec2{seen.at(point).x_px(), seen.at(point).y_px()}; };
+  return {at(kLeftShoulder), at(kRightShoulder), at(kLeftHip), at(kRightHip)};
+}
+
+Vec2 centre_of(const TrunkCorners& corners) { return mean(mean(corners[0], corners[1]), mean(corners[2], corners[3])); }
+
+TrunkColor color_of(const FrameView& frame, const TrunkCorners& corners) {
+  constexpr int kSide = 12;
+  double red = 0, green = 0, blue = 0;
+  int count = 0;
+  for (int j = 0; j < kSide; ++j)
+    for (int i = 0; i < kSide; ++i) {
+      const double a = 0.2 + 0.6 * i / (kSide - 1), b = 0.15 + 0.7 * j / (kSide - 1);
+      const auto [x, y] = place_in(corners, a, b);
+      if (!(x >= 0 && y >= 0 && x <= frame.picture.width() - 1 && y <= frame.picture.height() - 1)) continue;
+      if (frame.is_covered({x, y})) continue;
+      const Rgb8 pixel = frame.picture.at(static_cast<int>(y + 0.5), static_cast<int>(x + 0.5));
+      red += pixel.r;
+      green += pixel.g;
+      blue += pixel.b;
+      ++count;
+    }
+  const double sum = red + green + blue;
+  if (count < kSide || !(sum > 0)) return {};
+  return {red / sum, green / sum, sum / (3 * 255.0 * count), true};
+}
+
+double covered_share(const FrameView& frame, const TrunkCorners& corners) {
+  constexpr int kSide = 9;
+  int covered = 0;
+  for (int j = 0; j < kSide; ++j)
+    for (int i = 0; i < kSide; ++i)
+      covered += frame.is_covered(place_in(corners, i / (kSide - 1.0), j / (kSide - 1.0))) ? 1 : 0;
+  return static_cast<double>(covered) / (kSide * kSide);
+}
+
+}  // namespace duo::body

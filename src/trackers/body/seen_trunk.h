@@ -1,0 +1,30 @@
+// The trunk of a body that the networks found, in the picture.
+#pragma once
+
+#include <array>
+
+#include "trackers/body/frame_view.h"
+#include "trackers/body/joints.h"
+
+namespace duo::body {
+
+/// Left and right shoulder, left and right hip.
+///
+/// Units  px
+using TrunkCorners = std::array<Vec2, 4>;
+TrunkCorners corners_of(const SeenBody& seen);
+Vec2 centre_of(const TrunkCorners& corners);
+
+/// Mean colour: shares of red and green, and how bright.
+struct TrunkColor {
+  double red = 1.0 / 3, green = 1.0 / 3, bright = 0;
+  bool known = false;
+};
+
+/// Of what nobody covers; unknown where that is little.
+TrunkColor color_of(const FrameView& frame, const TrunkCorners& corners);
+
+/// Share of the trunk that somebody nearer covers.
+double covered_share(const FrameView& frame, const TrunkCorners& corners);
+
+}  // namespace duo::body
