@@ -19,7 +19,8 @@ using body::Uncover;
 
 constexpr std::array<const Skeleton*, 1> kBodies = {&kBody};
 constexpr std::size_t kMostPeople = 8;
-constexpr int kSearchEvery = 8;  // frames
+constexpr int kSearchEvery = 8;                    // frames
+constexpr double kAlike = 1, kPerhapsAlike = 2.2;  // Body::unlike() below which two are the same person
 
 class BodyTracker final : public Tracker {
  public:
@@ -47,12 +48,12 @@ class BodyTracker final : public Tracker {
     const body::FrameView* frame = nullptr;
     std::array<std::optional<std::size_t>, 2> hands = {};  // left, right: which of those looked at
   };
-  /// Takes those who stand before somebody out of the frame that this one is looked for in.
+  /// Of people who overlap, takes the others out of the frame that each is looked for in.
   void uncover(const body::FrameView& frame);
   /// Finds the tracked person that each seen one is, the most alike first.
   void match(const body::FrameView& frame, std::span<const SeenPerson> seen);
   void match(const body::FrameView& frame, std::span<const SeenPerson> seen, double most);
-  /// Those whom the finder sees, and those whom only their uncovered frames show.
+  /// Those whom the finder sees; those who overlap with others are looked at in frames of their own.
   void gather(const body::FrameView& frame, std::span<const SeenPerson> seen);
   /// Whether a body that nobody owns lies over one that somebody does: the same person, marked twice.
   bool is_of_another(const body::FrameView& frame, std::span<const SeenPerson> seen, std::size_t which) const;
@@ -69,7 +70,7 @@ class BodyTracker final : public Tracker {
   std::vector<TurnedSquare> regions_;  // of those whom the finder does not follow
   std::vector<const body::Places*> nearer_;
   std::array<Uncover, kMostPeople> uncovers_;
-  std::array<SeenBody, kMostPeople> behind_;  // of those who are covered
+  std::array<SeenBody, kMostPeople> alone_;  // those who overlap with others
   std::vector<Look> looks_;
   std::vector<SeenHand> hands_;
   std::vector<Person> people_;
@@ -112,7 +113,6 @@ void BodyTracker::reset() {
 }
 
 void BodyTracker::match(const body::FrameView& frame, std::span<const SeenPerson> seen) {
-  constexpr double kAlike = 1, kPerhapsAlike = 2.2;
   for (Tracked& each : tracked_) each.matched = false;
   owners_.assign(seen.size(), nullptr);
   match(frame, seen, kAlike);
@@ -159,6 +159,7 @@ bool BodyTracker::is_of_another(const body::FrameView& frame, std::span<const Se
 
 void BodyTracker::uncover(const body::FrameView& frame) {
   constexpr double kApart_m = 0.25;
+  constexpr int kStillThere = 5;  // frames
   std::size_t used = 0;
   for (Tracked& each : tracked_) {
     each.uncover = nullptr;
@@ -167,7 +168,7 @@ void BodyTracker::uncover(const body::FrameView& frame) {
     const double z_m = each.body.expected_trunk().z;
     for (const Tracked& other : tracked_) {
       const double other_z_m = other.body.expected_trunk().z;
-      if (other.body.missed() > 0 || std::abs(other_z_m - z_m) < kApart_m) continue;
+      if (&other == &each || other.body.missed() > kStillThere || std::abs(other_z_m - z_m) < kApart_m) continue;
       const Window beside = other.body.expected_box(frame);
       // Who is not followed is looked for in a region that the other one may fill.
       const int around = each.matched ? 0 : box.height / 2;
@@ -190,7 +191,7 @@ void BodyTracker::uncover(const body::FrameView& frame) {
 
 void BodyTracker::gather(const body::FrameView& frame, std::span<const SeenPerson> seen) {
   constexpr std::uint16_t kThere = 16384;  // a probability of 0.5
-  constexpr double kMostCovered = 0.7, kMostUnlike = 2.2;
+  constexpr double kMostCovered = 0.7;
   sights_.clear();
   for (std::size_t i = 0; i < seen.size(); ++i)
     if (owners_[i] != nullptr && owners_[i]->uncover == nullptr) sights_.push_back({owners_[i], &seen[i].body, &frame, {}});
@@ -198,13 +199,13 @@ void BodyTracker::gather(const body::FrameView& frame, std::span<const SeenPerso
   for (Tracked& each : tracked_) {
     if (each.uncover == nullptr) continue;
     const body::FrameView& uncovered = each.uncover->view();
-    SeenBody& behind = behind_[used++];
+    SeenBody& alone = alone_[used++];
     const Look look = {uncovered.picture, each.body.expected_region(frame)};
-    detector_->bodies({&look, 1}, {&behind, 1});
+    detector_->bodies({&look, 1}, {&alone, 1});
     const auto plain = std::ranges::find(owners_, &each);
-    if (behind.score_q15 >= kThere && body::covered_share(uncovered, body::corners_of(behind)) < kMostCovered &&
-        each.body.unlike(uncovered, behind) < kMostUnlike)
-      sights_.push_back({&each, &behind, &uncovered, {}});
+    if (alone.score_q15 >= kThere && body::covered_share(uncovered, body::corners_of(alone)) < kMostCovered &&
+        each.body.unlike(uncovered, alone) < kPerhapsAlike)
+      sights_.push_back({&each, &alone, &uncovered, {}});
     else if (plain != owners_.end() && !each.covered)
       sights_.push_back({&each, &seen[static_cast<std::size_t>(plain - owners_.begin())].body, &uncovered, {}});
   }
