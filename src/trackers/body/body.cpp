@@ -227,6 +227,7 @@ void Body::lift(Scene& scene) const {
 
 void Body::update(const FrameView& frame, const Scene& scene, const Choices& chosen) {
   constexpr double kStepGain = 0.5, kLongestStep_m = 0.2, kFar_off_m = 0.12, kFar_off_px = 6, kTooFar_m = 0.15;
+  constexpr int kSights = 2, kUnsureSights = 6;
   missed_ = 0;
   ++age_;
   for (const JointId id : kFreeJoints) {
@@ -237,9 +238,11 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     state.seen = chosen[id].on_surface && point.inside && std::abs(p.z - chosen[id].p.z) < kFar_off_m &&
                  length(at, point.at_px) < std::max(kFar_off_px * point.sigma_px, kTooFar_m * frame.depth.px_per_m(p.z));
     const bool was_hidden = state.hidden > 2;
-    // After a gap one sight may be a mistake.
-    state.sure = state.seen && (state.sure || state.seen_before || age_ == 1);
-    state.seen_before = state.seen;
+    // After a gap one sight may be a mistake, and more of a hand that its network does not see.
+    const bool hand = id == JointId::kLeftHand || id == JointId::kRightHand;
+    const int enough = hand && scene.hands[is_left(id) ? 0 : 1] == HandSight::kAbsent ? kUnsureSights : kSights;
+    state.shown = state.seen ? state.shown + 1 : 0;
+    state.sure = state.seen && (state.sure || state.shown >= enough || age_ == 1);
     state.hidden = state.seen ? 0 : state.hidden + 1;
     const Vec3 off = p - scene.expected[id].p;
     // What the network guesses of a hidden limb tells nothing of its speed.
@@ -315,7 +318,8 @@ void Body::miss(bool covered) {
     State& state = states_[id];
     fitted_.places[id] = fitted_.places[id] + pace_;
     state.step = keeps * pace_;
-    state.seen = state.sure = state.seen_before = false;
+    state.seen = state.sure = false;
+    state.shown = 0;
     ++state.hidden;
     state.sigma_m = std::sqrt(square(state.sigma_m) + square(2 * unrest_m(id)));
   }

@@ -45,10 +45,10 @@ class Body {
 
  private:
   struct State {
-    Vec3 step;  // since the last frame, smoothed
-    int hidden = 0;
+    Vec3 step;                  // since the last frame, smoothed
+    int hidden = 0, shown = 0;  // frames since it was seen, and since it was not
     double sigma_m = 0.1;
-    bool seen = false, seen_before = false, sure = false;
+    bool seen = false, sure = false;
   };
 
   explicit Body(double scale) : lengths_(scale) {}

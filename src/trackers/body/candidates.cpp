@@ -17,12 +17,14 @@ double expected_score(const Expected& expected, Vec3 p, double most) {
   return capped(distance(expected.p, p), sigma, most / (1 + 0.5 * expected.hidden));
 }
 
-/// A hidden joint has something before it.
+/// A hidden joint has something before it, and at least its own flesh.
 double free_space_score(const Scene& scene, JointId id, Vec3 p) {
-  constexpr double kClose_m = 0.03;
+  constexpr double kClose_m = 0.03, kNoise_px = 0.25;
   const Surfaces& surfaces = scene.surfaces[id];
   if (surfaces.count == 0 || !scene.points[id].inside) return 0;
-  return surfaces.all[0].z_m > p.z + kClose_m ? kFreeSpace : 0;
+  const double skin_z = surfaces.all[0].z_m;
+  const double flesh = depth_of_joint_m(scene, id, skin_z) - kNoise_px * scene.depth.m_per_px(p.z);
+  return skin_z + std::max(flesh, 0.0) > p.z + kClose_m ? kFreeSpace : 0;
 }
 
 /// A hidden arm is behind the trunk or beside it, not in it.

@@ -48,6 +48,46 @@ TEST(BodyChoose, InProfileTheFarShoulderIsInferredBehindTheNearOne) {
   EXPECT_NEAR(chosen[kRightShoulder].p.z - chosen[kLeftShoulder].p.z, s.lengths[Bone::kShoulders], 0.03);
 }
 
+TEST(BodyChoose, ANearHipIsNotHiddenByTheFarOne) {
+  // Half turned, the left side far; both hips are marked on the near one's skin, and the far one is expected there as well.
+  Places places = standing();
+  places[kLeftHip] = {0.05, 0.035, 2.09};
+  places[kRightHip] = {-0.05, 0.035, 1.91};
+  Standing s(places, {0.5, 0, 0.866});
+  const Surface near = s.scene.surfaces[kRightHip].all[0];
+  s.put(kLeftHip, {near});
+  for (const JointId id : {kLeftHip, kRightHip}) s.scene.expected[id] = {places[id] - Vec3{0, 0, 0.06}, 0.1, 10};
+  Choices chosen;
+  choose(s.scene, chosen);
+  EXPECT_TRUE(chosen[kRightHip].on_surface);
+  EXPECT_FALSE(chosen[kLeftHip].on_surface);
+  EXPECT_LT(distance(chosen[kRightHip].p, places[kRightHip]), 0.005);
+}
+
+TEST(BodyChoose, OfWhoSitsTheThighsHideTheHips) {
+  // Thighs towards the cameras: at the hips' points lies the lap, 12 cm before where hips have their skin.
+  Places places = standing();
+  for (const double side : {1.0, -1.0}) {
+    const Limb& leg = kLegChains[side > 0 ? 0 : 1];
+    places[leg[1]] = {side * 0.11, 0.1, 1.605};
+    places[leg[2]] = {side * 0.11, 0.51, 1.605};
+    places[leg[3]] = {side * 0.12, 0.55, 1.46};
+  }
+  Standing s(places);
+  for (int i = 0; i < 200; ++i) s.lengths.learn(Bone::kThigh, 0.4, 1);
+  for (const JointId id : {kLeftHip, kRightHip}) {
+    s.put(id, {{s.scene.surfaces[id].all[0].z_m - 0.12, 1}});
+    s.scene.points[id].visibility = 0.5;
+    s.scene.expected[id] = {places[id], 0.2, 10};
+  }
+  Choices chosen;
+  choose(s.scene, chosen);
+  for (const JointId id : {kLeftHip, kRightHip}) {
+    EXPECT_FALSE(chosen[id].on_surface) << name_of(id);
+    EXPECT_LT(distance(chosen[id].p, places[id]), 0.04) << name_of(id);
+  }
+}
+
 TEST(BodyChoose, NoSurfaceCarriesTwoKnees) {
   // Legs crossed: both knees are marked at one place, and its surface is the left one's.
   Places places = standing();
