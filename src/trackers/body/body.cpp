@@ -373,7 +373,7 @@ void Body::publish(const FrameView& frame, Person& person) const {
     Covariance3 c = fitted_.covariance[id];
     if (!state.sure) {
       const bool held = is_root(id) && missed_ == 0;  // by the rest of the trunk
-      const double grown = square(std::min(0.035 + 0.4 * std::min(state.hidden, 30) * frame.frame_s, held ? kHeld_m : 1));
+      const double grown = square(std::min(0.035 + 0.25 * std::min(state.hidden, 30) * frame.frame_s, held ? kHeld_m : 1));
       c.xx += grown;
       c.yy += grown;
       c.zz += grown;

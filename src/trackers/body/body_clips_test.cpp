@@ -146,7 +146,8 @@ TEST_P(BodyClips, WithoutAClick) {
   for (const char* part : {"hand", "wrist", "elbow", "shoulder"})
     EXPECT_LE(tallies[part].bad, limits.arms_bad_percent / 100 * tallies[part].visible) << part;
   Rebuilt rebuilt = rebuild(persons);
-  EXPECT_LT(quantile(rebuilt.off_mm, 0.95), 5);
+  EXPECT_LT(median(rebuilt.off_mm), 5);
+  EXPECT_LT(quantile(rebuilt.off_mm, 0.95), 12) << "bones are learnt in the first second";
   EXPECT_LT(rebuilt.most_degrees, 1);
   EXPECT_NEAR(rebuilt.least_norm, 1, 1e-9);
   EXPECT_NEAR(rebuilt.most_norm, 1, 1e-9);
