@@ -26,14 +26,25 @@ std::size_t FrameSlots::slot_at(double t_s) {
 }
 
 MotionTrack::MotionTrack(const Skeleton& skeleton, std::string name_end)
-    : skeleton_(skeleton), name_end_(std::move(name_end)), children_(skeleton.joints.size()) {
+    : skeleton_(skeleton),
+      name_end_(std::move(name_end)),
+      children_(skeleton.joints.size()),
+      known_m_(skeleton.joints.size()),
+      hanging_m_(skeleton.joints.size()) {
   for (std::size_t j = 1; j < children_.size(); ++j)
     children_[static_cast<std::size_t>(skeleton.joints[j].parent)].push_back(j);
 }
 
 void MotionTrack::add(std::size_t slot, const Person& person) {
   frames_.resize(std::max(frames_.size(), slot + 1));
-  if (auto places = known_places(person, axes_from_rig(Axes::kOpengl))) frames_[slot] = std::move(*places);
+  auto places = known_places(person, axes_from_rig(Axes::kOpengl));
+  if (!places) return;
+  const auto known = [&](std::size_t j) { return person.joints[j].state != JointState::kLost; };
+  for (std::size_t j = 1; j < places->size(); ++j) {
+    const auto parent = static_cast<std::size_t>(skeleton_.joints[j].parent);
+    (known(j) && known(parent) ? known_m_ : hanging_m_)[j].push_back(norm((*places)[j] - (*places)[parent]));
+  }
+  frames_[slot] = std::move(*places);
 }
 
 std::string MotionTrack::joint_name(std::size_t joint) const {
@@ -42,11 +53,8 @@ std::string MotionTrack::joint_name(std::size_t joint) const {
 
 double MotionTrack::length_m(std::size_t joint) const {
   constexpr double kUnseen_m = 0.25;
-  const auto parent = static_cast<std::size_t>(skeleton_.joints[joint].parent);
-  std::vector<double> lengths_m;
-  for (const auto& places : frames_)
-    if (!places.empty()) lengths_m.push_back(norm(places[joint] - places[parent]));
-  return lengths_m.empty() ? kUnseen_m : median(lengths_m);
+  const std::vector<double>& of = known_m_[joint].empty() ? hanging_m_[joint] : known_m_[joint];
+  return of.empty() ? kUnseen_m : median(std::vector(of));
 }
 
 Vec3 MotionTrack::offset_m(std::size_t joint) const {

@@ -43,7 +43,8 @@ class MotionTrack {
   /// The joints that hang from a joint.
   const std::vector<std::size_t>& children(std::size_t joint) const { return children_[joint]; }
 
-  /// From the parent's joint at rest, a T-pose with the person's left at +x: as long as the median of all frames.
+  /// From the parent's joint at rest, a T-pose with the person's left at +x: as long as the median of all frames that
+  /// show both ends of the bone.
   ///
   /// Units  metres
   Vec3 offset_m(std::size_t joint) const;
@@ -62,7 +63,8 @@ class MotionTrack {
   const Skeleton& skeleton_;
   std::string name_end_;
   std::vector<std::vector<std::size_t>> children_;
-  std::vector<std::vector<Vec3>> frames_;  // places of the joints, y up; empty while one of them is lost
+  std::vector<std::vector<Vec3>> frames_;                 // places of the joints, y up; empty while one of them is lost
+  std::vector<std::vector<double>> known_m_, hanging_m_;  // by joint: lengths of the bone that ends there, found and made up
 };
 
 /// All persons of a run.

@@ -55,7 +55,7 @@ struct Tally {
 
 /// The joints as files of motion give them back.
 struct Rebuilt {
-  std::vector<double> off_mm;            // of BVH's bones, whose lengths stay, from the tracker's joints
+  std::vector<double> off_mm;            // of BVH's bones, whose lengths stay, from the tracker's joints that are seen
   double most_degrees = 0;               // of VMC's turned bones from the tracker's
   double least_norm = 1, most_norm = 1;  // of VMC's quaternions
 };
@@ -83,7 +83,7 @@ Rebuilt rebuild(const std::vector<Person>& persons) {
       at[j] = at[parent] + whole[parent] * offsets[j];
       whole[j] = whole[parent] * whole[j];
       whole_in_avatar[j] = whole_in_avatar[parent] * whole_in_avatar[j];
-      if (persons[i].joints[j].state == JointState::kLost) continue;
+      if (persons[i].joints[j].state != JointState::kSeen) continue;
       out.off_mm.push_back(1000 * norm(at[j] - (*places)[j]));
       const Vec3 bone = normalized((*in_avatar)[j] - (*in_avatar)[parent]);
       const Vec3 turned = whole_in_avatar[parent] * rest_direction(kBody.joints[j].id, BodyAxes::kLeftHanded);
