@@ -29,7 +29,7 @@ struct FlatMatcher {
   static constexpr std::span<const std::string_view> kPresets = kFlatPresets;
   static constexpr std::span<const Parameter<FlatParams>> kParameters = kFlatParameters;
   static constexpr int kMaxDisparity = 10;
-  static constexpr bool kTellsConfidence = false;
+  static constexpr bool kTellsConfidence = false, kTakesColor = false, kFills = false;
   using Params = FlatParams;
   static Result<Params> params(std::string_view, const Overrides& overrides) {
     Params out;

@@ -49,7 +49,7 @@ const std::set<std::string> kNotMatching = {"gray", "median", "gaussian", "recti
 struct Options {
   std::string what = "all", engine = "both", size = "both", instructions;
   int repeat = 11;
-  bool json = false;
+  bool fine = false, json = false;
 };
 
 struct Contestant {
@@ -114,7 +114,9 @@ Result<Table> measure(const SyntheticPair& input, int threads, const Options& op
   for (const char* engine : {"simd", "ref"}) {
     if (options.engine != "both" && options.engine != engine) continue;
     if (std::string(engine) == "ref" && threads > 1) continue;  // the definition runs on one thread
-    for (const Choice& choice : kChoices) {
+    std::vector<Choice> choices(std::begin(kChoices), std::end(kChoices));
+    if (options.fine && std::string(engine) == "simd") choices.push_back({"fine", "default"});
+    for (const Choice& choice : choices) {
       DUO_TRY_ASSIGN(auto one, make_ours(engine, choice, true, input, threads, options.repeat));
       ours.push_back(std::move(one));
       table.ours.push_back({fmt::format("{} {} {}", engine, choice.matcher, choice.preset), {}, {}, {}});
@@ -283,6 +285,7 @@ Command add(CLI::App& app) {
       ->type_name("N")
       ->check(within(1, 1000))
       ->capture_default_str();
+  sub->add_flag("--fine", options->fine, "With the matcher fine of engine simd, too: seconds a frame");
   sub->add_flag("--json", options->json, "Print it as JSON");
   sub->footer(kFooter);
   return {sub, [options] { return run(*options); }};

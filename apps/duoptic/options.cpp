@@ -14,11 +14,9 @@
 namespace duo::app {
 namespace {
 
-const std::vector<std::pair<std::string, Denoise>> kDenoise = {{"auto", Denoise::kAuto},
-                                                               {"none", Denoise::kNone},
-                                                               {"median", Denoise::kMedian},
-                                                               {"gaussian", Denoise::kGaussian},
-                                                               {"both", Denoise::kBoth}};
+const std::vector<std::pair<std::string, Denoise>> kDenoise = {
+    {"auto", Denoise::kAuto},         {"none", Denoise::kNone}, {"median", Denoise::kMedian},
+    {"gaussian", Denoise::kGaussian}, {"both", Denoise::kBoth}, {"diffusion", Denoise::kDiffusion}};
 
 CLI::Validator known_engine() {
   return {[](std::string& name) {

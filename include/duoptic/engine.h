@@ -20,9 +20,10 @@ namespace [[gnu::visibility("default")]] duo {
 enum class Denoise : std::uint8_t {
   kAuto,  // kGaussian for raw pictures (with a rig), kNone for pairs that come rectified
   kNone,
-  kMedian,    // median 3x3
-  kGaussian,  // 5x5 binomial
-  kBoth,      // median, then Gaussian: the thesis
+  kMedian,     // median 3x3
+  kGaussian,   // 5x5 binomial
+  kBoth,       // median, then Gaussian: the thesis
+  kDiffusion,  // anisotropic diffusion: smooths surfaces, keeps their edges; not on a device
 };
 
 /// Which full maps the frame shall hold. CPU engines have those that are on here in any case; a device sends only what is

@@ -35,7 +35,10 @@ Result<Prepared> prepare_setup(const Setup& setup) {
   const Denoise denoise = setup.denoise != Denoise::kAuto ? setup.denoise : (setup.rig ? kRawDenoise : Denoise::kNone);
   out.median = denoise == Denoise::kMedian || denoise == Denoise::kBoth;
   out.gaussian = denoise == Denoise::kGaussian || denoise == Denoise::kBoth;
+  out.diffusion = denoise == Denoise::kDiffusion;
   out.color = setup.wants.color || setup.wants.on_device;
+  out.match_color = Matchers::takes_color(out.matcher);
+  out.match_fill = setup.fill && Matchers::fills(out.matcher);
 
   out.size = setup.size;
   if (setup.rig) {

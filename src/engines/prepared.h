@@ -12,8 +12,9 @@ namespace duo {
 
 struct Prepared {
   Setup setup;
-  bool median = false, gaussian = false;  // denoising, resolved
-  bool color = false;                     // wanted, or needed by who observes
+  bool median = false, gaussian = false, diffusion = false;  // denoising, resolved
+  bool color = false;                                        // wanted, or needed by who observes
+  bool match_color = false, match_fill = false;              // the matcher takes colours, and is asked what holes would have
   std::optional<Rectification> rectification;
   std::optional<Rectified> geometry;
   Size size;  // of the rectified pictures

@@ -12,6 +12,7 @@
 #include "engines/keep_windows.h"
 #include "engines/prepared.h"
 #include "stages/depth/depth.h"
+#include "stages/diffusion/diffusion.h"
 #include "stages/fill/fill.h"
 #include "stages/fill_regions/fill_regions.h"
 #include "stages/gaussian/gaussian.h"
@@ -35,6 +36,10 @@ class RefEngine final : public Engine {
     if (setup.fill) {
       unfilled_ = Image<std::uint16_t>(prepared_.size);
     }
+    const Size color_size = prepared_.match_color ? prepared_.size : Size{};
+    left_color_ = Image<Rgb8>(color_size);
+    right_color_ = Image<Rgb8>(color_size);
+    filled_ = Image<std::uint16_t>(prepared_.match_fill ? prepared_.size : Size{});
     now_ = Image<std::uint8_t>(setup.size);
     next_ = Image<std::uint8_t>(setup.size);
     return {};
@@ -42,7 +47,7 @@ class RefEngine final : public Engine {
 
   void look_at(std::span<const Window> windows) override { windows_.assign(windows.begin(), windows.end()); }
   void focus(const Focus& focus) override { focus_ = focus; }
-  bool can_focus() const override { return true; }
+  bool can_focus() const override { return !prepared_.match_color; }
 
   void submit(const Pair& pair) override {
     DUO_CHECK(matcher_.has_value());
@@ -60,22 +65,28 @@ class RefEngine final : public Engine {
     prepare_view(pair.right, maps ? &maps->right : nullptr, frame.right, frame.right_inside);
 
     Disparity& disparity = frame.disparity;
-    const GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside};
-    const bool whole = focus_.window.within(prepared_.size).empty();
+    GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside};
+    if (prepared_.match_color) {
+      prepare_color(pair.left, maps != nullptr ? &maps->left : nullptr, left_color_);
+      prepare_color(pair.right, maps != nullptr ? &maps->right : nullptr, right_color_);
+      gray.left_color = left_color_, gray.right_color = right_color_;
+    }
+    const bool whole = !can_focus() || focus_.window.within(prepared_.size).empty();
     if (whole)
-      std::visit([&](auto& matcher) { matcher.match(gray, {disparity.d_q4, frame.confidence}, timer_); }, *matcher_);
+      std::visit([&](auto& matcher) { matcher.match(gray, {disparity.d_q4, frame.confidence, filled_}, timer_); }, *matcher_);
     else
       focused_.match(
           prepared_, focus_, 0,
           [&](const MatchSetup& of_part, Matchers::Ref& out) { Matchers::make(prepared_.matcher, of_part, out); }, timer_,
           frame);
     ref::mark_measured(disparity.d_q4, disparity.origin);
+    if (prepared_.match_fill) take_filled(filled_, disparity.d_q4, disparity.origin);
     if (setup.fill && whole) fill(frame);
     if (whole) keep_windows(windows_, frame);
     timer_.stage("fill");
     if (setup.wants.depth) ref::depth(disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
     timer_.stage("depth");
-    if (prepared_.color) prepare_color(pair.left, maps, frame.color);
+    if (prepared_.color) prepare_color(pair.left, maps != nullptr ? &maps->left : nullptr, frame.color);
     timer_.stage("color");
   }
 
@@ -97,6 +108,10 @@ class RefEngine final : public Engine {
       now_.swap(next_);
       timer_.stage("gaussian");
     }
+    if (prepared_.diffusion) {
+      ref::diffuse(now_, now_);
+      timer_.stage("diffusion");
+    }
     if (map != nullptr)
       ref::rectify(now_, *map, out, inside);
     else
@@ -112,8 +127,8 @@ class RefEngine final : public Engine {
     ref::fill(unfilled_, max_disparity, disparity.origin, disparity.d_q4);
   }
 
-  void prepare_color(const Picture& picture, const Rectification* maps, Image<Rgb8>& out) {
-    if (maps != nullptr) return simd::rectify(pool_, picture.pixels, maps->left, out);
+  void prepare_color(const Picture& picture, const ResampleMap* map, Image<Rgb8>& out) {
+    if (map != nullptr) return simd::rectify(pool_, picture.pixels, *map, out);
     for (int y = 0; y < picture.pixels.height(); ++y) std::copy_n(picture.pixels.row(y), picture.pixels.width(), out.row(y));
   }
 
@@ -126,7 +141,9 @@ class RefEngine final : public Engine {
   ObjectPool<Frame> frames_;
   std::shared_ptr<Frame> current_;  // until it is collected
   Image<std::uint16_t> unfilled_;
-  Image<std::uint8_t> now_, next_;  // one view on its way through the denoising
+  Image<Rgb8> left_color_, right_color_;  // of matchers that take colours
+  Image<std::uint16_t> filled_;           // and what those that know say of holes
+  Image<std::uint8_t> now_, next_;        // one view on its way through the denoising
   StageTimer timer_;
 };
 

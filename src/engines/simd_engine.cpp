@@ -101,7 +101,7 @@ class SimdEngine final : public Engine {
 
   void look_at(std::span<const Window> windows) override { windows_.assign(windows.begin(), windows.end()); }
   void focus(const Focus& focus) override { focus_ = focus; }
-  bool can_focus() const override { return true; }
+  bool can_focus() const override { return !prepared_.match_color; }
 
   void submit(const Pair& pair) override {
     DUO_CHECK(prepared_.setup.size == pair.left.pixels.size() && prepared_.setup.size == pair.right.pixels.size());

@@ -7,6 +7,7 @@
 #include "core/check.h"
 #include "engines/keep_windows.h"
 #include "stages/depth/depth.h"
+#include "stages/diffusion/diffusion.h"
 #include "stages/fill/fill.h"
 #include "stages/gaussian/gaussian.h"
 #include "stages/gray/gray.h"
@@ -18,6 +19,9 @@ namespace duo {
 SimdFrames::SimdFrames(const Prepared& prepared, int threads) : prepared_(prepared), pool_(threads), throttle_(pool_.most()) {
   Matchers::make(pool_, prepared.matcher, match_setup(prepared), matcher_);
   if (prepared.setup.fill) filling_.emplace(prepared.size, prepared.setup.max_disparity);
+  if (prepared.diffusion) diffusion_.emplace(prepared.setup.size);
+  if (prepared.match_color) left_color_ = Image<Rgb8>(prepared.size), right_color_ = Image<Rgb8>(prepared.size);
+  if (prepared.match_fill) filled_ = Image<std::uint16_t>(prepared.size);
   now_ = Image<std::uint8_t>(prepared.setup.size);
   next_ = Image<std::uint8_t>(prepared.setup.size);
 }
@@ -34,17 +38,23 @@ void SimdFrames::make(const Pair& pair, std::span<const Window> windows, const F
   const auto* maps = prepared_.rectification ? &*prepared_.rectification : nullptr;
   prepare_view(pair.left, maps ? &maps->left : nullptr, frame.left, frame.left_inside);
   // While the picture and its map are in the cache.
-  if (prepared_.color) prepare_color(pair.left, maps, frame.color);
+  if (prepared_.color) prepare_color(pair.left, maps != nullptr ? &maps->left : nullptr, frame.color);
   timer_.stage("color");
   prepare_view(pair.right, maps ? &maps->right : nullptr, frame.right, frame.right_inside);
 
   Disparity& disparity = frame.disparity;
-  const bool whole = focus.window.within(prepared_.size).empty();
+  const bool whole = prepared_.match_color || focus.window.within(prepared_.size).empty();
   if (whole) {
     // What fills a hole may come from anywhere in the picture.
     const RowBand matched = setup.fill ? RowBand{} : RowBand::of(windows, prepared_.size);
-    const GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside, turn};
-    std::visit([&](auto& matcher) { matcher.match(gray, {disparity.d_q4, frame.confidence}, timer_, matched); }, *matcher_);
+    GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside, turn};
+    if (prepared_.match_color) {
+      prepare_color(pair.left, maps != nullptr ? &maps->left : nullptr, left_color_);
+      prepare_color(pair.right, maps != nullptr ? &maps->right : nullptr, right_color_);
+      gray.left_color = left_color_, gray.right_color = right_color_;
+    }
+    const Match found{disparity.d_q4, frame.confidence, filled_};
+    std::visit([&](auto& matcher) { matcher.match(gray, found, timer_, matched); }, *matcher_);
   } else {
     focused_.match(
         prepared_, focus, turn,
@@ -56,6 +66,7 @@ void SimdFrames::make(const Pair& pair, std::span<const Window> windows, const F
         timer_, frame);
   }
   simd::mark_measured(pool_, disparity.d_q4, disparity.origin);
+  if (prepared_.match_fill) take_filled(filled_, disparity.d_q4, disparity.origin);
   if (filling_ && whole) filling_->fill(pool_, frame.left, disparity);
   if (whole) keep_windows(windows, frame);
   timer_.stage("fill");
@@ -81,6 +92,10 @@ void SimdFrames::prepare_view(const Picture& picture, const ResampleMap* map, Im
     now_.swap(next_);
     timer_.stage("gaussian");
   }
+  if (prepared_.diffusion) {
+    simd::diffuse(pool_, now_, *diffusion_, now_);
+    timer_.stage("diffusion");
+  }
   if (map != nullptr)
     simd::rectify(pool_, now_, *map, out, inside);
   else
@@ -88,8 +103,8 @@ void SimdFrames::prepare_view(const Picture& picture, const ResampleMap* map, Im
   timer_.stage("rectify");
 }
 
-void SimdFrames::prepare_color(const Picture& picture, const Rectification* maps, Image<Rgb8>& out) {
-  if (maps != nullptr) return simd::rectify(pool_, picture.pixels, maps->left, out);
+void SimdFrames::prepare_color(const Picture& picture, const ResampleMap* map, Image<Rgb8>& out) {
+  if (map != nullptr) return simd::rectify(pool_, picture.pixels, *map, out);
   for (int y = 0; y < picture.pixels.height(); ++y) std::copy_n(picture.pixels.row(y), picture.pixels.width(), out.row(y));
 }
 

@@ -11,6 +11,7 @@
 #include "engines/filling.h"
 #include "engines/focused.h"
 #include "engines/prepared.h"
+#include "stages/diffusion/diffusion.h"
 
 namespace duo {
 
@@ -31,7 +32,7 @@ class SimdFrames {
 
  private:
   void prepare_view(const Picture& picture, const ResampleMap* map, Image<std::uint8_t>& out, Image<std::uint8_t>& inside);
-  void prepare_color(const Picture& picture, const Rectification* maps, Image<Rgb8>& out);
+  void prepare_color(const Picture& picture, const ResampleMap* map, Image<Rgb8>& out);
 
   const Prepared& prepared_;
   Pool pool_;
@@ -39,7 +40,10 @@ class SimdFrames {
   Matchers::Simd matcher_;
   Focused<Matchers::Simd> focused_;
   std::optional<Filling> filling_;
-  Image<std::uint8_t> now_, next_;  // one view on its way through the denoising
+  std::optional<simd::DiffusionScratch> diffusion_;
+  Image<Rgb8> left_color_, right_color_;  // of matchers that take colours
+  Image<std::uint16_t> filled_;           // and what those that know say of holes
+  Image<std::uint8_t> now_, next_;        // one view on its way through the denoising
   StageTimer timer_;
 };
 

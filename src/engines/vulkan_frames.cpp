@@ -52,6 +52,7 @@ Result<std::unique_ptr<Frames>> Frames::make(const std::shared_ptr<Device>& devi
 }
 
 Result<void> Frames::make_kernels() {
+  if (prepared_.diffusion) return Error{ErrorCode::kUnsupported, "set up denoising on a device: diffusion has no kernel"};
   DUO_TRY_ASSIGN(gray_, Gray::make(device_));
   if (prepared_.median) {
     DUO_TRY_ASSIGN(median_, Median::make(device_));

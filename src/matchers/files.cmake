@@ -1,4 +1,7 @@
 # Explicit names, no glob: what is not listed is not built.
+set(dir ${PROJECT_SOURCE_DIR}/src/matchers/fine)
+target_sources(duoptic PRIVATE ${dir}/fine.cpp ${dir}/fine_params.cpp ${dir}/fine_ref.cpp ${dir}/fine_simd.cpp)
+duoptic_test(matchers/fine ${dir}/fine_test.cpp)
 set(dir ${PROJECT_SOURCE_DIR}/src/matchers/pyramid)
 target_sources(duoptic PRIVATE ${dir}/pyramid.cpp ${dir}/pyramid_params.cpp ${dir}/pyramid_ref.cpp ${dir}/pyramid_simd.cpp)
 duoptic_test(matchers/pyramid ${dir}/pyramid_test.cpp)

@@ -17,11 +17,13 @@ struct MatchSetup {
 };
 
 /// Where the maps go. Confidence, of the matchers that tell it: 1 (doubtful) .. 255 (sure) where there is a disparity, else 0.
+/// Filled, of the matchers that know the surfaces around a hole: what the hole would have, or none; anything elsewhere.
 ///
-/// Shape   both as the pair; confidence may be empty = not wanted
+/// Shape   all as the pair; confidence and filled may be empty = not wanted
 struct Match {
   View<std::uint16_t> d_q4;
   View<std::uint8_t> confidence = {};
+  View<std::uint16_t> filled = {};
 };
 
 }  // namespace duo

@@ -27,6 +27,7 @@ struct Chosen {
 ///   kName, kPresets, kParameters   what it is called by
 ///   kMaxDisparity                  most disparities that it searches
 ///   kTellsConfidence               whether it fills Match::confidence
+///   kTakesColor, kFills            whether it needs GrayPair's colours, and fills Match::filled
 ///   Params, params(preset, overrides) -> Result<Params>
 ///   Ref(params, setup), with match(pair, match, timer)                plain loops: the definition
 ///   Simd(pool, params, setup), with match(pair, match, timer, rows)   the same bits in `rows`; others may be none
@@ -78,6 +79,13 @@ struct MatcherList {
                                  M::kName, names_of({Matchers::kTellsConfidence...}))};
       return Choice{Chosen<M>{std::move(params)}};
     });
+  }
+
+  static bool takes_color(const Choice& choice) {
+    return std::visit([]<class M>(const Chosen<M>&) { return M::kTakesColor; }, choice);
+  }
+  static bool fills(const Choice& choice) {
+    return std::visit([]<class M>(const Chosen<M>&) { return M::kFills; }, choice);
   }
 
   static void make(const Choice& choice, const MatchSetup& setup, Ref& out) {

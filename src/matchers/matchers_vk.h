@@ -1,6 +1,7 @@
 // The matchers on a device.
 #pragma once
 
+#include "matchers/fine/fine_vk.h"
 #include "matchers/matchers.h"
 #include "matchers/pyramid/pyramid_vk.h"
 #include "matchers/sgm/sgm_vk.h"

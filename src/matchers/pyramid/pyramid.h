@@ -107,6 +107,7 @@ struct PyramidMatcher {
   static constexpr std::span<const Parameter<PyramidParams>> kParameters = kPyramidParameters;
   static constexpr int kMaxDisparity = Engine::kMaxDisparity;
   static constexpr bool kTellsConfidence = false;
+  static constexpr bool kTakesColor = false, kFills = false;
   using Params = PyramidParams;
   static Result<Params> params(std::string_view preset, const Overrides& overrides) {
     return pyramid_params(preset, overrides);

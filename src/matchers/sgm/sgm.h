@@ -1,6 +1,8 @@
 // The semi-global matcher: census and gradient costs, aggregated along paths. README.md beside this file tells the method.
 #pragma once
 
+#include <optional>
+
 #include "core/clock.h"
 #include "core/pool.h"
 #include "matchers/match.h"
@@ -37,12 +39,18 @@ class Sgm {
   ///
   /// Shape   pair as set up, out the same size
   /// Errors  none, and no allocation but in the reference's stages
-  void match(const GrayPair& pair, const Match& out, StageTimer& timer);
+  ///
+  /// `clear`: how the pair is matched where that has been settled; else its stream settles it
+  void match(const GrayPair& pair, const Match& out, StageTimer& timer, std::optional<bool> clear = {});
+  /// Of the last pair: what was compared, and whether as clear pictures.
+  SemiGlobal compared() const { return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global()}; }
+  bool clear() const { return clear_; }
 
  private:
   SgmParams params_;
   int max_disparity_;
   std::shared_ptr<ClearStream> stream_;
+  bool clear_ = false;
   SgmMaps maps_;
   PlaneImages left_, right_;
 };
@@ -55,13 +63,16 @@ class Sgm {
  public:
   Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup);
   /// The same in `rows`; none in all others. Saves most of what these would take.
-  void match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows = {});
+  void match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows = {}, std::optional<bool> clear = {});
+  SemiGlobal compared() const { return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global()}; }
+  bool clear() const { return clear_; }
 
  private:
   Pool& pool_;
   SgmParams params_;
   int max_disparity_;
   std::shared_ptr<ClearStream> stream_;
+  bool clear_ = false;
   SgmMaps maps_;
   PlaneImages left_, right_;
   BalanceScratch balance_scratch_;
@@ -83,6 +94,7 @@ struct SgmMatcher {
   static constexpr std::span<const Parameter<SgmParams>> kParameters = kSgmParameters;
   static constexpr int kMaxDisparity = SgmParams::kMaxDisparity;
   static constexpr bool kTellsConfidence = true;
+  static constexpr bool kTakesColor = false, kFills = false;
   using Params = SgmParams;
   static Result<Params> params(std::string_view preset, const Overrides& overrides) { return sgm_params(preset, overrides); }
   using Ref = ref::Sgm;

@@ -17,17 +17,17 @@ Sgm::Sgm(const SgmParams& params, const MatchSetup& setup)
       left_(setup.size, 0),
       right_(setup.size, 0) {}
 
-void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer) {
+void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, std::optional<bool> clear) {
   const int measured_q4 = ref::noise_q4(pair.left, pair.right), noise_q4 = params_.soften != 0 ? measured_q4 : 0;
   timer.stage("noise");
-  const bool clear = stream_->next(pair.turn, looks_clear(params_, measured_q4, ref::blur_q4(pair.left, pair.right)));
+  clear_ = clear ? *clear : stream_->next(pair.turn, looks_clear(params_, measured_q4, ref::blur_q4(pair.left, pair.right)));
   timer.stage("blur");
-  ref::balance(pair, max_disparity_, clear ? kClearUnbalanced : 0, maps_.balanced);
+  ref::balance(pair, max_disparity_, clear_ ? kClearUnbalanced : 0, maps_.balanced);
   timer.stage("balance");
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
     if (noise_q4 > 0) ref::bilateral(gray, bilateral_range(noise_q4), maps_.softened);
     timer.stage("bilateral");
-    ref::match_planes(noise_q4 > 0 ? maps_.softened.view() : gray, inside, census_dead_zone(noise_q4), clear, out);
+    ref::match_planes(noise_q4 > 0 ? maps_.softened.view() : gray, inside, census_dead_zone(noise_q4), clear_, out);
     timer.stage("match_planes");
   };
   planes(pair.left, pair.left_inside, left_);

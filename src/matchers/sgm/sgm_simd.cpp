@@ -25,7 +25,7 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
       speckle_scratch_(setup.size),
       smooth_scratch_(setup.size) {}
 
-void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows) {
+void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows, std::optional<bool> clear) {
   // What the result depends on: taps of the median; islands, which are smaller than `speckle` pixels where they matter; paths
   // from above, and with paths from below the whole picture.
   const int h = pair.size().height;
@@ -35,14 +35,15 @@ void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBa
   const int plane_rows = params_.semi_global().upward ? h : joined.end;
   const int measured_q4 = simd::noise_q4(pool_, pair.left, pair.right), noise_q4 = params_.soften != 0 ? measured_q4 : 0;
   timer.stage("noise");
-  const bool clear = stream_->next(pair.turn, looks_clear(params_, measured_q4, simd::blur_q4(pool_, pair.left, pair.right)));
+  clear_ =
+      clear ? *clear : stream_->next(pair.turn, looks_clear(params_, measured_q4, simd::blur_q4(pool_, pair.left, pair.right)));
   timer.stage("blur");
-  simd::balance(pool_, pair, max_disparity_, clear ? kClearUnbalanced : 0, balance_scratch_, maps_.balanced);
+  simd::balance(pool_, pair, max_disparity_, clear_ ? kClearUnbalanced : 0, balance_scratch_, maps_.balanced);
   timer.stage("balance");
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
     if (noise_q4 > 0) simd::bilateral(pool_, gray, bilateral_range(noise_q4), maps_.softened);
     timer.stage("bilateral");
-    simd::match_planes(pool_, noise_q4 > 0 ? maps_.softened.view() : gray, inside, census_dead_zone(noise_q4), clear,
+    simd::match_planes(pool_, noise_q4 > 0 ? maps_.softened.view() : gray, inside, census_dead_zone(noise_q4), clear_,
                        plane_rows, out);
     timer.stage("match_planes");
   };

@@ -26,6 +26,9 @@ namespace duo {
 // Source   after the row-minimum fill of the Middlebury evaluations (Scharstein, Szeliski 2002), whose values are constant
 //
 // mark_measured: origin is kMeasured where there is a disparity, else kNone; it comes first.
+//
+// take_filled: a hole takes what the matcher says that it would have, where it says so; plain loops are fast enough.
+void take_filled(View<const std::uint16_t> filled, View<std::uint16_t> d_q4, View<std::uint8_t> origin);
 namespace ref {
 void mark_measured(View<const std::uint16_t> d_q4, View<std::uint8_t> origin);
 void fill(View<const std::uint16_t> src, int max_disparity, View<std::uint8_t> origin, View<std::uint16_t> dst,

@@ -5,7 +5,19 @@
 #include "core/check.h"
 #include "stages/fill/fill.h"
 
-namespace duo::ref {
+namespace duo {
+
+void take_filled(View<const std::uint16_t> filled, View<std::uint16_t> d_q4, View<std::uint8_t> origin) {
+  DUO_CHECK(filled.size() == d_q4.size() && filled.size() == origin.size());
+  for (int y = 0; y < filled.height(); ++y)
+    for (int x = 0; x < filled.width(); ++x) {
+      if (d_q4.at(y, x) != Disparity::kNone || filled.at(y, x) == Disparity::kNone) continue;
+      d_q4.at(y, x) = filled.at(y, x);
+      origin.at(y, x) = static_cast<std::uint8_t>(Origin::kFilled);
+    }
+}
+
+namespace ref {
 namespace {
 
 constexpr int kShortRun = 8, kRowsAround = 4, kColumnsAround = 24, kTapStep = 2, kFewestTaps = 12, kSame_q4 = 24;
@@ -77,4 +89,5 @@ void fill(View<const std::uint16_t> src, int max_disparity, View<std::uint8_t> o
   }
 }
 
-}  // namespace duo::ref
+}  // namespace ref
+}  // namespace duo

@@ -23,6 +23,14 @@ TEST(Fill, MarkMeasured) {
   test::expect_same<std::uint8_t>(want, got, "mark_measured simd");
 }
 
+TEST(Fill, TakesWhatTheMatcherSays) {
+  Image<std::uint16_t> d = test::image<std::uint16_t>({{70, kNone, kNone, kNone}});
+  auto origin = origin_of(d);
+  take_filled(test::image<std::uint16_t>({{71, 72, kNone, 0}}), d, origin);
+  test::expect_same<std::uint16_t>(test::image<std::uint16_t>({{70, 72, kNone, 0}}), d, "disparities");
+  test::expect_same<std::uint8_t>(test::image<std::uint8_t>({{1, 2, 0, 2}}), origin, "origins");
+}
+
 // Too few disparities for a slope: the smaller one of both ends.
 TEST(Fill, HandWorked) {
   const auto d = test::image<std::uint16_t>({{kNone, 80, kNone, kNone, 32, kNone}, {kNone, kNone, kNone, kNone, kNone, kNone}});

@@ -7,10 +7,11 @@
 
 namespace duo {
 
-/// Shape   all H x W; the inside pictures (255 inside, 0 outside) may be empty = all inside
+/// Shape   all H x W; the inside pictures (255 inside, 0 outside) may be empty = all inside, the colour ones = not asked for
 struct GrayPair {
   View<const std::uint8_t> left = {}, right = {}, left_inside = {}, right_inside = {};
   std::uint64_t turn = 0;  // which of its stream, from 0
+  View<const Rgb8> left_color = {}, right_color = {};
   Size size() const { return left.size(); }
   bool masked() const { return !left_inside.empty(); }
 };

@@ -1,0 +1,57 @@
+#include <algorithm>
+
+#include "core/check.h"
+#include "matchers/fine/fine.h"
+#include "stages/color_median/color_median.h"
+#include "stages/fill/fill.h"
+#include "stages/slanted_planes/plane_fit.h"
+
+namespace duo::ref {
+
+Fine::Fine(const FineParams& params, const MatchSetup& setup)
+    : params_(params),
+      max_disparity_(setup.max_disparity),
+      sgm_(params.sgm(), setup),
+      mirrored_sgm_(params.sgm(), setup),
+      mirrored_(setup.size, setup.masked),
+      maps_(setup.size) {}
+
+void Fine::match(const GrayPair& pair, const Match& out, StageTimer& timer) {
+  DUO_CHECK(pair.left_color.size() == pair.size() && pair.right_color.size() == pair.size());
+  view(pair, sgm_, {}, maps_.left, timer);
+  view(mirrored_.of(pair), mirrored_sgm_, sgm_.clear(), maps_.mirrored, timer);
+  const View<std::uint16_t> checked = params_.smooth != 0 ? maps_.median.view() : out.d_q4;
+  check_planes(pair, maps_.left, maps_.mirrored, params_.tolerance, checked);
+  ref::remove_speckle(checked, SgmParams{}.speckle_step_q4, params_.speckle);
+  if (params_.smooth != 0) ref::color_median({checked, pair.left_color}, out.d_q4);
+  timer.stage("check_planes");
+  if (out.filled.empty()) return;
+  for (int y = 0; y < out.d_q4.height(); ++y) std::copy_n(out.d_q4.row(y), out.d_q4.width(), maps_.whole.d_q4.row(y));
+  fill(pair);
+  for (int y = 0; y < out.d_q4.height(); ++y)
+    for (int x = 0; x < out.d_q4.width(); ++x) maps_.holes.at(y, x) = out.d_q4.at(y, x) == Disparity::kNone;
+  ref::color_median({maps_.whole.d_q4, pair.left_color, maps_.holes, ColorMedian::kMostRadius}, out.filled);
+  timer.stage("vote");
+}
+
+/// Its planes, from what sgm finds on.
+void Fine::view(const GrayPair& pair, Sgm& sgm, std::optional<bool> clear, PlaneMap& planes, StageTimer& timer) {
+  sgm.match(pair, {maps_.whole.d_q4}, timer, clear);
+  fill(pair);
+  ref::fit_planes({pair.left_color, maps_.whole.d_q4, max_disparity_}, planes);
+  timer.stage("fit_planes");
+  EnergyVolume energies(pair.size(), max_disparity_);
+  ref::energy_volume(sgm.compared(), energies);
+  timer.stage("energy_volume");
+  ref::slanted_planes({energies, pair.left_color}, planes);
+  timer.stage("slanted_planes");
+}
+
+void Fine::fill(const GrayPair& pair) {
+  ref::mark_measured(maps_.whole.d_q4, maps_.whole.origin);
+  ref::fill_regions({pair.left, max_disparity_}, maps_.whole.d_q4, maps_.whole.origin);
+  maps_.whole.d_q4.swap(maps_.unfilled);
+  ref::fill(maps_.unfilled, max_disparity_, maps_.whole.origin, maps_.whole.d_q4);
+}
+
+}  // namespace duo::ref
