@@ -109,7 +109,9 @@ Result<void> Pipeline::State::prepare_tracker() {
       return Error{ErrorCode::kUnsupported, fmt::format("cannot match around people alone: {}", why)};
     };
     if (!tracker->starts_by_itself()) return no(fmt::format("the tracker {} does not follow whole people", tracker->name()));
-    if (!engine->can_focus()) return no(fmt::format("the engine {} matches whole pictures; take simd", engine->name()));
+    if (!engine->can_focus())
+      return no(fmt::format("the engine {} matches whole pictures with matcher {}; take engine simd and another matcher",
+                            engine->name(), setup.frames.matcher));
     if (setup.frames.fill) return no("to fill holes takes the whole picture; leave one of both out");
   }
   // The engine makes the next frame on all threads meanwhile: a layer of a network that is shared by as many would wait for
