@@ -156,6 +156,7 @@ EnergyVolumeScratch::EnergyVolumeScratch(Size size, int max_disparity, int count
 }
 
 void energy_volume(Pool& pool, const SemiGlobal& in, EnergyVolumeScratch& scratch, EnergyVolume& out) {
+  DUO_CHECK(out.lanes() == SemiGlobalScratch::padding(in.max_disparity));
   DUO_CHECK(in.left.size() == out.size() && in.max_disparity == out.max_disparity() && in.params.paths() == 3);
   DUO_CHECK(static_cast<int>(scratch.threads.size()) >= pool.threads());
   const auto along = HWY_DYNAMIC_DISPATCH(energies_along);

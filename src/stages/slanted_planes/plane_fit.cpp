@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "core/check.h"
+#include "duoptic/frame.h"
 
 namespace duo {
 namespace {

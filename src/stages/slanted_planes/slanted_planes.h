@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "core/pool.h"
-#include "stages/semi_global/energy_volume.h"
+#include "duoptic/image.h"
+#include "stages/types/energy_volume.h"
 
 namespace duo {
 
