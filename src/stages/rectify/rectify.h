@@ -61,8 +61,8 @@ void rectify(View<const std::uint8_t> src, const ResampleMap& map, View<std::uin
 namespace simd {
 void rectify(Pool& pool, View<const std::uint8_t> src, const ResampleMap& map, View<std::uint8_t> dst,
              View<std::uint8_t> inside);
-/// Colour for display and clouds only, bilinear; a picture that stays where it is (kSoft) is copied: no engine computes with
-/// it.
+/// Colour for display, for clouds and for weights of like colours, bilinear; a picture that stays where it is (kSoft) is
+/// copied. Integers: every engine runs this one, with the same bits on every instruction set.
 void rectify(Pool& pool, View<const Rgb8> src, const ResampleMap& map, View<Rgb8> dst);
 }  // namespace simd
 

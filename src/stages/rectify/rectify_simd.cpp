@@ -158,12 +158,14 @@ void rectify_color_rows(View<const Rgb8> src, const ResampleMap& map, View<Rgb8>
   };
   const auto vector = [&](const std::uint32_t* corner_row, const std::uint16_t* fraction_row, Rgb8* out) {
     const Place p(corner_row, fraction_row);
-    const auto pixel = hn::Add(hn::Mul(p.y0, hn::Set(d, stride)), p.x0);
-    const auto at = hn::BitCast(d_signed, hn::Mul(pixel, hn::Set(d, 3)));
-    const auto words = [&](std::uint32_t pixels, int bytes) {
-      return hn::GatherOffset(d, reinterpret_cast<const std::uint32_t*>(&src.data()[pixels].r + bytes), at);
+    const auto words = [&](auto y, int bytes) {
+      const auto pixel = hn::Add(hn::Mul(y, hn::Set(d, stride)), p.x0);
+      const auto at = hn::BitCast(d_signed, hn::Mul(pixel, hn::Set(d, 3)));
+      return hn::GatherOffset(d, reinterpret_cast<const std::uint32_t*>(&src.data()->r + bytes), at);
     };
-    const auto top = words(0, 0), top_last = words(0, 2), bottom = words(stride, 0), bottom_last = words(stride, 2);
+    // Where columns is not kLinear, y0 may be the last row.
+    const auto below = hn::Min(hn::Add(p.y0, hn::Set(d, 1)), hn::Set(d, static_cast<std::uint32_t>(src.height() - 1)));
+    const auto top = words(p.y0, 0), top_last = words(p.y0, 2), bottom = words(below, 0), bottom_last = words(below, 2);
     hn::StoreInterleaved3(p.value(ends(top), ends(bottom)), p.value(greens(top, top_last), greens(bottom, bottom_last)),
                           p.value(ends(top_last), ends(bottom_last)), d_u8, &out->r);
   };
