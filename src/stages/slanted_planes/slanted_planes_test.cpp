@@ -51,7 +51,7 @@ TEST(SlantedPlanes, FitByHand) {
   Pool two(2);
   simd::fit_planes(two, {guide, d_q4, 16}, planes);
   EXPECT_EQ(planes.at(8, 8), (Plane{4 * kOne, 953, 0}));
-  d_q4.at(1, 8) = 200;  // not at an even distance
+  d_q4.at(1, 8) = 200;  // at odd distances: no taps
   d_q4.at(8, 1) = 200;
   EXPECT_EQ(fitted_plane({guide, d_q4, 16}, 8, 8), (Plane{4 * kOne, 953, 0}));
   d_q4.at(3, 3) = Disparity::kNone;
