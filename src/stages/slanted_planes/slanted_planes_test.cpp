@@ -40,8 +40,7 @@ TEST(SlantedPlanes, EnergyByHand) {
 }
 
 // By hand: 81 taps of equal weight on a slope of 4/16 px per px. The spread of -8, -6 .. 8 is 240 / 9, so that the slope is
-// drawn to 4 (240 / 9) / (240 / 9 + 2) = 3.7209 sixteenths, 952.6 in 1/4096. A pixel that is more than 16 + 2 * 8 off does not
-// count.
+// drawn to 4 (240 / 9) / (240 / 9 + 2) = 3.7209 sixteenths, 952.6 in 1/4096.
 TEST(SlantedPlanes, FitByHand) {
   Image<std::uint16_t> d_q4({17, 17});
   Image<Rgb8> guide(d_q4.size());
