@@ -221,10 +221,23 @@ void CalibrationPage::put_words() {
                                 share(status_.covered[1]));
   if (status_.count > 0) far += fmt::format("; {} % of the file", 100 * status_.looked / status_.count);
   put_text(kFaint, far);
+  put_wishes();
   if (status_.views == 0 && !ended)
     put_text(kFaint,
              "Print a board with duoptic board -o board.pdf and tape it flat. Turn the lenses until focus is largest, then fix "
              "them. A click on a picture draws the same row in both: the cameras should look the same way.");
+}
+
+/// All of them by name, as many in a row as fit; green: met.
+void CalibrationPage::put_wishes() const {
+  const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x, gap = 14 * window_.scale();
+  for (std::size_t i = 0; i < kBoardWishes; ++i) {
+    const char* const name = name_of(static_cast<BoardWish>(i));
+    if (i > 0 && ImGui::GetItemRectMax().x + gap + ImGui::CalcTextSize(name).x < right) ImGui::SameLine(0, gap);
+    ImGui::PushStyleColor(ImGuiCol_Text, status_.met[i] ? kBox : kFaint);
+    ImGui::TextUnformatted(name);
+    ImGui::PopStyleColor();
+  }
 }
 
 /// The figures of the rig in mm.

@@ -38,6 +38,7 @@ class CalibrationPage {
   Result<void> draw_picture(std::size_t side, ImVec2 from, ImVec2 to);
   void draw_board(std::size_t side, const Fit& fit) const;
   void put_words();
+  void put_wishes() const;
   void put_result();
   void put_ways_on();
   void put_board();

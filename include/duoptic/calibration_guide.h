@@ -35,6 +35,8 @@ enum class BoardWish : std::uint8_t {
 inline constexpr std::size_t kBoardWishes = 15;
 using BoardWishes = std::array<bool, kBoardWishes>;
 
+/// "upper left".
+const char* name_of(BoardWish wish);
 /// How a wish is asked for: "now upper left".
 const char* words_of(BoardWish wish);
 

@@ -39,6 +39,22 @@ constexpr std::array<const char*, kBoardWishes> kWords = {"show it in the middle
                                                           "now nearer: half as wide as the picture",
                                                           "now farther away: a quarter as wide as the picture"};
 
+constexpr std::array<const char*, kBoardWishes> kWishNames = {"middle",
+                                                              "left side nearer",
+                                                              "right side nearer",
+                                                              "top nearer",
+                                                              "bottom nearer",
+                                                              "upper left",
+                                                              "upper right",
+                                                              "lower right",
+                                                              "lower left",
+                                                              "top",
+                                                              "right",
+                                                              "bottom",
+                                                              "left",
+                                                              "near",
+                                                              "far"};
+
 /// The ninth of the picture that a wish for a place is about: column and row, 0 .. 2.
 constexpr std::array<std::pair<BoardWish, std::array<int, 2>>, 9> kNinths = {{{BoardWish::kMiddle, {1, 1}},
                                                                               {BoardWish::kUpperLeft, {0, 0}},
@@ -87,6 +103,7 @@ double way(const std::vector<BoardCorner>& a, const std::vector<BoardCorner>& b,
 
 }  // namespace
 
+const char* name_of(BoardWish wish) { return kWishNames[static_cast<std::size_t>(wish)]; }
 const char* words_of(BoardWish wish) { return kWords[static_cast<std::size_t>(wish)]; }
 
 BoardPlace place_of(const std::vector<BoardCorner>& corners, const Board& board, Size size) {
