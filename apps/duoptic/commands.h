@@ -25,6 +25,7 @@
   EACH(demo, "Measuring")                 \
   EACH(synth, "Measuring")                \
   EACH(eval, "Measuring")                 \
+  EACH(truth, "Measuring")                \
   EACH(bench, "Measuring")                \
   EACH(devices, "This machine")           \
   EACH(version, "This machine")           \

@@ -5,6 +5,7 @@ target_sources(duoptic_tool PRIVATE
   ${dir}/calibration_page.cpp
   ${dir}/depth_panel.cpp
   ${dir}/panels.cpp
+  ${dir}/pattern_screen.cpp
   ${dir}/player.cpp
   ${dir}/quality_region.cpp
   ${dir}/sidebar.cpp

@@ -104,6 +104,26 @@ void Window::set_title(const std::string& title) {
   glfwSetWindowTitle(window_, title.c_str());
 }
 
+Result<Size> Window::fill_display(int number) {
+  int count = 0;
+  GLFWmonitor** displays = glfwGetMonitors(&count);
+  if (number < 0 || number >= count)
+    return Error{ErrorCode::kBadInput, fmt::format("there is no display {}: {} {} connected, counted from 0", number, count,
+                                                   count == 1 ? "is" : "are")};
+  const GLFWvidmode& mode = *glfwGetVideoMode(displays[number]);
+  const Size size{mode.width, mode.height};
+  glfwSetWindowSizeLimits(window_, GLFW_DONT_CARE, GLFW_DONT_CARE, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  glfwSetWindowAttrib(window_, GLFW_AUTO_ICONIFY, GLFW_FALSE);  // it stays when another window is clicked
+  glfwSetInputMode(window_, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
+  glfwSetWindowMonitor(window_, displays[number], 0, 0, size.width, size.height, mode.refreshRate);
+  Size pixels;
+  for (int i = 0; i < 20 && pixels != size; ++i) {  // the display takes a moment; where it is scaled the sizes stay unlike
+    glfwWaitEventsTimeout(0.05);
+    glfwGetFramebufferSize(window_, &pixels.width, &pixels.height);
+  }
+  return pixels;
+}
+
 Result<void> Window::create_window(const std::string& title, Size size) {
   glfw_words().clear();
   glfwSetErrorCallback([](int, const char* words) {

@@ -38,6 +38,10 @@ class Window {
   /// Files that were dropped onto it since the last call.
   std::vector<std::string> dropped() { return std::exchange(dropped_, {}); }
   void set_title(const std::string& title);
+  /// Covers a display, counted from 0, without frame and pointer; the size of its pixels.
+  ///
+  /// Errors  there is no such display
+  Result<Size> fill_display(int number);
   /// How much larger than 96 dots per inch letters and lines shall be.
   float scale() const { return scale_; }
   /// Who draws, in the driver's words.

@@ -27,11 +27,14 @@ Result<Picture> load_picture(const fs::path& path, Size expected) {
   return picture;
 }
 
+/// A gray PNG with all its bits, 8 or 16; of other pictures the red channel.
 Result<Image<float>> load_truth(const fs::path& path, Size size, double scale) {
   DUO_TRY_ASSIGN(const Picture picture, load_picture(path, size));
+  const auto gray = read_png16(path);
   Image<float> out(size);
   for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x) out.at(y, x) = static_cast<float>(picture.pixels.at(y, x).r / scale);
+    for (int x = 0; x < size.width; ++x)
+      out.at(y, x) = static_cast<float>((gray ? gray->at(y, x) : picture.pixels.at(y, x).r) / scale);
   return out;
 }
 

@@ -289,7 +289,7 @@ TEST_F(CommandLine, ManualAndCompletionComeFromTheSameTables) {
     EXPECT_EQ(std::system(script.c_str()), 0);
     return bytes_of(at("completed.txt"));
   };
-  EXPECT_EQ(completed("duoptic tr", 1), "track\n");
+  EXPECT_EQ(completed("duoptic tra", 1), "track\n");
   EXPECT_EQ(completed("duoptic eval mid", 2), "middlebury\n");
   EXPECT_EQ(completed("duoptic depth a b --max-d", 4), "--max-disparity\n");
   EXPECT_EQ(completed("duoptic depth --matcher s", 3), "sgm\n");

@@ -11,6 +11,7 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/mounting.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/noise.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/patterns.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/synthetic/projector.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/render.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/room.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/synthetic/scene.cpp
