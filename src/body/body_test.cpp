@@ -120,6 +120,30 @@ TEST(BoneTurns, AKneeBendsAroundItsHinge) {
   expect_turn((*turns)[at(JointId::kLeftAnkle)], Mat3{}, "ankle");
 }
 
+/// By hand: an upper arm 5 cm too long leads 5 cm beyond the elbow; the forearm then points back to the wrist below it, and
+/// ends sqrt(0.05^2 + 0.2^2) - 0.2 m from it instead of 5 cm.
+TEST(BoneTurns, ABoneOfAnotherLengthDoesNotMoveTheNextOnesEnd) {
+  std::vector<Vec3> places = t_pose();
+  const auto at = [](JointId id) { return static_cast<std::size_t>(id); };
+  places[at(JointId::kLeftWrist)] = places[at(JointId::kLeftElbow)] + Vec3{0, -0.2, 0};
+  places[at(JointId::kLeftHand)] = places[at(JointId::kLeftWrist)] + Vec3{0, -0.2, 0};
+  std::vector<double> lengths(places.size(), 0.2);
+  lengths[at(JointId::kLeftElbow)] = 0.25;
+  const auto turns = BoneTurner(kBody, BodyAxes::kRightHanded).turn(places, lengths);
+  ASSERT_TRUE(turns);
+  std::vector<Vec3> reached(places.size(), places[0]);
+  std::vector<Mat3> whole = *turns;
+  for (std::size_t j = 1; j < places.size(); ++j) {
+    const auto parent = static_cast<std::size_t>(kBody.joints[j].parent);
+    reached[j] = reached[parent] + whole[parent] * (lengths[j] * rest_direction(kBody.joints[j].id, BodyAxes::kRightHanded));
+    whole[j] = whole[parent] * whole[j];
+  }
+  const auto off = [&](JointId id) { return norm(reached[at(id)] - places[at(id)]); };
+  EXPECT_NEAR(off(JointId::kLeftElbow), 0.05, 1e-9);
+  EXPECT_NEAR(off(JointId::kLeftWrist), 0.0061553, 1e-6);
+  EXPECT_NEAR(off(JointId::kRightHand), 0, 1e-9);
+}
+
 /// A whole body that turns does so at its root alone.
 TEST(BoneTurns, TheRootTurnsWithTheBody) {
   const Mat3 quarter = {{0, 0, 1, 0, 1, 0, -1, 0, 0}};
