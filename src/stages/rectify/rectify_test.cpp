@@ -168,6 +168,19 @@ TEST(Rectify, ColorIsThreeGrays) {
     }
 }
 
+// Where rows are put right a place may lie in the last row, which has none below it.
+TEST(Rectify, ColorInTheLastRow) {
+  std::vector<Rgb8> pixels = {{1, 2, 3}, {4, 5, 6}, {10, 20, 30}, {40, 50, 60}};
+  const View<Rgb8> src(pixels.data(), {2, 2}, 2);
+  ResampleMap map{Image<std::uint32_t>({1, 1}), Image<std::uint16_t>({1, 1}), ResampleMap::Columns::kCubic};
+  map.corner.at(0, 0) = 1;  // x0 = 0, y0 = 1
+  map.fraction_q8.at(0, 0) = 128;
+  Pool one(1);
+  Image<Rgb8> got({1, 1});
+  simd::rectify(one, src, map, got);
+  EXPECT_EQ(got.at(0, 0), (Rgb8{10, 20, 30}));
+}
+
 // A shifted, slightly turned view, as real rigs have.
 TEST(Rectify, Speed) {
   const Size size{640, 480};
