@@ -22,7 +22,8 @@ int spread(std::uint32_t random, int most) { return (static_cast<int>(random & 0
 
 Plane plane_nearby(const Plane& plane, int y, int x, int sweep, int attempt) {
   constexpr int kFar = Plane::kOne / 2, kSteep = Plane::kOne / 8;
-  const auto seed = static_cast<std::uint32_t>(((y * 4096 + x) * 8 + attempt) * 8 + sweep);
+  const auto part = [](int v) { return static_cast<std::uint32_t>(v); };
+  const std::uint32_t seed = ((part(y) * 4096 + part(x)) * 8 + part(attempt)) * 8 + part(sweep);
   const std::uint32_t first = mixed(seed), second = mixed(first + 0x9E3779B9U);
   const auto slope = [&](int old, std::uint32_t random) {
     return std::clamp(old + spread(random, kSteep >> (sweep + attempt)), -Plane::kSteepest, Plane::kSteepest);
