@@ -54,8 +54,10 @@ TEST(EnergyVolume, SimdAgrees) {
   std::mt19937 rng(32);
   const std::pair<Size, int> cases[] = {{{70, 13}, 40}, {{33, 5}, 70},  {{1, 1}, 1},
                                         {{40, 4}, 129}, {{30, 3}, 256}, {{9, 6}, 64}};
-  for (const auto& [size, max_disparity] : cases)
+  for (const auto& each : cases)
     for (const bool masked : {false, true}) {
+      const Size size = each.first;
+      const int max_disparity = each.second;
       Image<std::uint8_t> left(size), right(size), inside(size);
       test::fill(left.view(), test::Fill::kRandom, rng);
       for (int y = 0; y < size.height; ++y)

@@ -84,7 +84,9 @@ TEST(SlantedPlanes, FindsASlope) {
 TEST(SlantedPlanes, SimdAgrees) {
   std::mt19937 rng(33);
   const std::pair<Size, int> cases[] = {{{70, 9}, 40}, {{1, 1}, 1}, {{17, 30}, 64}, {{131, 5}, 129}};
-  for (const auto& [size, max_disparity] : cases) {
+  for (const auto& each : cases) {
+    const Size size = each.first;
+    const int max_disparity = each.second;
     const EnergyVolume energies = energies_of(size, max_disparity, [&](int, int, int) { return rng() % 86; });
     Image<Rgb8> guide(size);
     PlaneMap want(size);
