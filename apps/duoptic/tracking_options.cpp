@@ -24,10 +24,10 @@ void TrackingOptions::add_to(CLI::App& app) {
   app.add_option("--model", model, "The network of bodies of the tracker body: lite, full or heavy (see duoptic detect)")
       ->check(CLI::IsMember({"lite", "full", "heavy"}))
       ->capture_default_str();
-  app.add_flag(
-      "--focus", focus,
-      "Match around people alone, and every 15th frame as a whole: twice as many frames/s, joints like those of whole\n"
-      "frames but not to the bit. Of the tracker body, on the engines simd and ref");
+  app.add_flag("--focus", focus,
+               "Match around people alone, and every 15th frame as a whole: a quarter to a half of the CPU time less, joints "
+               "like those\n"
+               "of whole frames but not to the bit. Of the tracker body, on the engines simd and ref");
 }
 
 TrackingOptions TrackingOptions::or_tracker(const char* name) const {

@@ -32,32 +32,6 @@ void set_text(std::array<char, N>& field, const std::string& text) {
   std::snprintf(field.data(), N, "%s", text.c_str());
 }
 
-/// Column and row of the ninth of the picture where the board is wanted.
-std::optional<std::array<int, 2>> ninth_of(BoardWish wish) {
-  switch (wish) {
-    case BoardWish::kUpperLeft:
-      return {{0, 0}};
-    case BoardWish::kTop:
-      return {{1, 0}};
-    case BoardWish::kUpperRight:
-      return {{2, 0}};
-    case BoardWish::kLeft:
-      return {{0, 1}};
-    case BoardWish::kMiddle:
-      return {{1, 1}};
-    case BoardWish::kRight:
-      return {{2, 1}};
-    case BoardWish::kLowerLeft:
-      return {{0, 2}};
-    case BoardWish::kBottom:
-      return {{1, 2}};
-    case BoardWish::kLowerRight:
-      return {{2, 2}};
-    default:
-      return std::nullopt;
-  }
-}
-
 }  // namespace
 
 CalibrationPage::CalibrationPage(Window& window, std::unique_ptr<Calibrating> calibrating, const Board& board, bool can_swap)

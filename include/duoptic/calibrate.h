@@ -152,4 +152,4 @@ Result<void> write_calibration_report(const Calibration& calibration, const Boar
 /// Errors  those of every rig; pictures of another size
 Result<Pair> rectify_pair(const Rig& rig, const Pair& pair);
 
-}  // namespace gnu::visibility("default")]]duo
+}  // namespace duo

@@ -39,6 +39,8 @@ using BoardWishes = std::array<bool, kBoardWishes>;
 const char* name_of(BoardWish wish);
 /// How a wish is asked for: "now upper left".
 const char* words_of(BoardWish wish);
+/// Column and row, 0 .. 2, of the ninth of the picture where the board is wanted; none of wishes that are not about a place.
+std::optional<std::array<int, 2>> ninth_of(BoardWish wish);
 
 /// What a pose of the board has, told from one view without knowing the cameras.
 struct BoardPlace {
@@ -111,4 +113,4 @@ class CalibrationGuide {
 /// second.
 std::optional<Board> other_board(const Pair& pair, const Board& named);
 
-}  // namespace gnu::visibility("default")]]duo
+}  // namespace duo

@@ -118,4 +118,4 @@ struct ParameterInfo {
 /// Errors  unknown matcher or preset
 Result<std::vector<ParameterInfo>> matcher_parameters(std::string_view matcher, std::string_view preset);
 
-}  // namespace gnu::visibility("default")]]duo
+}  // namespace duo

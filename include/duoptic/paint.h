@@ -132,4 +132,4 @@ Image<Rgb8> draw_panels(const TrackedFrame& frame, const TrackHeader& header, co
 /// Of draw_panels(), whatever the frame.
 Size panels_size(const TrackHeader& header);
 
-}  // namespace gnu::visibility("default")]]duo
+}  // namespace duo

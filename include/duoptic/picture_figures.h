@@ -18,4 +18,4 @@ struct PictureFigures {
 /// Source  Pech-Pacheco et al., "Diatom autofocusing in brightfield microscopy: a comparative study", 2000
 PictureFigures picture_figures(View<const Rgb8> picture);
 
-}  // namespace gnu::visibility("default")]]duo
+}  // namespace duo

@@ -155,4 +155,4 @@ class Pipeline {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace gnu::visibility("default")]]duo
+}  // namespace duo

@@ -166,4 +166,4 @@ class LightDecoder {
 /// Errors  those of every written file
 Result<void> write_scene(const LightTruth& truth, const std::filesystem::path& folder);
 
-}  // namespace gnu::visibility("default")]]duo
+}  // namespace duo

@@ -11,4 +11,4 @@ namespace [[gnu::visibility("default")]] duo {
 /// The version of the library that the program runs with: "0.1.0".
 const char* version();
 
-}  // namespace gnu::visibility("default")]]duo
+}  // namespace duo

@@ -106,6 +106,11 @@ double way(const std::vector<BoardCorner>& a, const std::vector<BoardCorner>& b,
 const char* name_of(BoardWish wish) { return kWishNames[static_cast<std::size_t>(wish)]; }
 const char* words_of(BoardWish wish) { return kWords[static_cast<std::size_t>(wish)]; }
 
+std::optional<std::array<int, 2>> ninth_of(BoardWish wish) {
+  const auto* const found = std::find_if(kNinths.begin(), kNinths.end(), [&](const auto& each) { return each.first == wish; });
+  return found == kNinths.end() ? std::nullopt : std::optional(found->second);
+}
+
 BoardPlace place_of(const std::vector<BoardCorner>& corners, const Board& board, Size size) {
   DUO_CHECK(corners.size() >= 4);
   BoardPlace out{.left = 1e9, .top = 1e9, .right = -1e9, .bottom = -1e9};

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <list>
-#include <span>
+#include <variant>
 
 #include "duoptic/engine.h"
 #include "duoptic/frame.h"
@@ -19,7 +19,6 @@ struct FocusPart {
   Window kept;     // what is wanted of it
   Window matched;  // inside the picture; what is seen at its left border may lie outside of it in the right one
   int first_disparity = 0, disparities = 0;
-  friend bool operator==(const FocusPart&, const FocusPart&) = default;
 };
 
 /// `focus` not empty inside the picture.

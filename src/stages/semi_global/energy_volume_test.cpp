@@ -1,19 +1,10 @@
 #include "stages/semi_global/energy_volume.h"
 
-#include "stages/match_planes/match_planes.h"
 #include "tests/agree.h"
+#include "tests/semi_global_views.h"
 
 namespace duo {
 namespace {
-
-struct EnergyViews {
-  PlaneImages left, right;
-  EnergyViews(View<const std::uint8_t> l, View<const std::uint8_t> r, View<const std::uint8_t> inside, int max_disparity)
-      : left(l.size(), PlaneImages::kPadRight), right(l.size(), simd::SemiGlobalScratch::padding(max_disparity)) {
-    ref::match_planes(l, inside, 0, false, left);
-    ref::match_planes(r, inside, 0, false, right);
-  }
-};
 
 Image<std::uint8_t> plain(const EnergyVolume& volume) {
   const int n = volume.max_disparity();
@@ -31,22 +22,15 @@ Image<std::uint8_t> plain(const EnergyVolume& volume) {
 // 20, 0); x = 2: (0, 25 + 40 + 20).
 TEST(EnergyVolume, HandWorked) {
   const auto left = test::image<std::uint8_t>({{90, 90, 90}}), right = test::image<std::uint8_t>({{90, 10, 90}});
-  EnergyViews views(left, right, {}, 2);
-  for (PlaneImages* view : {&views.left, &views.right})
-    for (std::size_t c = 0; c < 3; ++c) {  // no gradients, no intervals
-      const View<std::uint8_t> value = view->value[c];
-      for (int x = 0; x < value.width(); ++x) {
-        if (c > 0) value.at(0, x) = 0;
-        view->low[c].at(0, x) = view->high[c].at(0, x) = value.at(0, x);
-      }
-    }
+  test::Views views(left, right, {}, 2);
+  views.keep_gray_alone();
   SemiGlobalParams params;
   params.census_truncation = 0;
   params.truncation = 32;
   params.p1 = 3;
   params.p2 = params.p2_least = 5;
   EnergyVolume got(left.size(), 2);
-  ref::energy_volume({views.left.planes(), views.right.planes(), 2, params}, got);
+  ref::energy_volume(views.in(2, params), got);
   test::expect_same<std::uint8_t>(test::image<std::uint8_t>({{4, 0, 85, 0, 0, 85}}), plain(got), "E");
 }
 
@@ -65,9 +49,9 @@ TEST(EnergyVolume, SimdAgrees) {
           right.at(y, x) = rng() % 4 ? left.at(y, std::min(size.width - 1, x + 3)) : static_cast<std::uint8_t>(rng());
           inside.at(y, x) = rng() % 11 ? 255 : 0;
         }
-      const EnergyViews views(left, right, masked ? View<const std::uint8_t>(inside) : View<const std::uint8_t>{},
+      const test::Views views(left, right, masked ? View<const std::uint8_t>(inside) : View<const std::uint8_t>{},
                               max_disparity);
-      const SemiGlobal in{views.left.planes(), views.right.planes(), max_disparity, {}};
+      const SemiGlobal in = views.in(max_disparity, {});
       EnergyVolume want(size, max_disparity);
       ref::energy_volume(in, want);
       test::each_target([&](const std::string& target) {

@@ -1,22 +1,12 @@
 #include "stages/semi_global/semi_global.h"
 
-#include "stages/match_planes/match_planes.h"
 #include "tests/agree.h"
+#include "tests/semi_global_views.h"
 
 namespace duo {
 namespace {
 
-struct Views {
-  PlaneImages left, right;
-  Views(View<const std::uint8_t> l, View<const std::uint8_t> r, View<const std::uint8_t> inside, int max_disparity)
-      : left(l.size(), PlaneImages::kPadRight), right(l.size(), simd::SemiGlobalScratch::padding(max_disparity)) {
-    ref::match_planes(l, inside, 0, false, left);
-    ref::match_planes(r, inside, 0, false, right);
-  }
-  SemiGlobal in(int max_disparity, const SemiGlobalParams& params) const {
-    return {left.planes(), right.planes(), max_disparity, params};
-  }
-};
+using test::Views;
 
 struct Match {
   Image<std::int16_t> left, right;
@@ -32,14 +22,7 @@ struct Match {
 TEST(SemiGlobal, HandWorked) {
   const auto left = test::image<std::uint8_t>({{50, 50, 50}}), right = test::image<std::uint8_t>({{50, 10, 50}});
   Views views(left, right, {}, 2);
-  for (PlaneImages* view : {&views.left, &views.right})
-    for (std::size_t c = 0; c < 3; ++c) {  // no gradients, no intervals
-      const View<std::uint8_t> value = view->value[c];
-      for (int x = 0; x < value.width(); ++x) {
-        if (c > 0) value.at(0, x) = 0;
-        view->low[c].at(0, x) = view->high[c].at(0, x) = value.at(0, x);
-      }
-    }
+  views.keep_gray_alone();
   SemiGlobalParams params;
   params.census_truncation = 0;
   params.truncation = 8;
