@@ -24,45 +24,55 @@ std::string words_of(const SourceChoice& choice) {
   return out;
 }
 
+/// Why there are not two cameras that go together, and what to do.
+std::string why_no_pair(const Result<std::vector<CameraInfo>>& cameras) {
+  if (!cameras) return cameras.error().what;
+  if (cameras->size() == 1)
+    return fmt::format("{}, {}, is the only camera: plug a second one in", source_name((*cameras)[0]), (*cameras)[0].name);
+  return "the cameras have no size and format in common: duoptic cameras lists what they give";
+}
+
 }  // namespace
 
-std::vector<StartPage::Way> StartPage::ways() {
+void StartPage::look_for_ways() {
   std::vector<Way> out;
   out.push_back({"Without cameras", "A rendered person", "is tracked live", {"synthetic", "", ""}});
   const auto cameras = find_cameras();
-  const CameraWish wish;
+  const std::vector<CameraPair> pairs = cameras ? camera_pairs(*cameras, CameraWish()) : std::vector<CameraPair>();
+  no_cameras_ = !pairs.empty() ? "" : why_no_pair(cameras);
   std::string title = "Cameras";
-  if (cameras)
-    for (const CameraPair& pair : camera_pairs(*cameras, wish)) {
-      const CameraInfo &left = (*cameras)[pair.left], &right = (*cameras)[pair.right];
-      out.push_back({std::exchange(title, ""),
-                     fmt::format("{} and {}", source_name(left), source_name(right)),
-                     left.name == right.name ? "two of " + left.name : left.name + ", " + right.name,
-                     {source_name(left), source_name(right), ""}});
-    }
+  for (const CameraPair& pair : pairs) {
+    const CameraInfo &left = (*cameras)[pair.left], &right = (*cameras)[pair.right];
+    out.push_back({std::exchange(title, ""),
+                   fmt::format("{} and {}", source_name(left), source_name(right)),
+                   left.name == right.name ? "two of " + left.name : left.name + ", " + right.name,
+                   {source_name(left), source_name(right), ""}});
+  }
   title = "Recent";
   for (const SourceChoice& choice : recent_sources())
     if (choice.left != "synthetic")
       out.push_back(
           {std::exchange(title, ""), words_of(choice), std::filesystem::path(choice.left).parent_path().string(), choice});
-  return out;
+  ways_ = std::move(out);
 }
 
 std::optional<SourceChoice> StartPage::choose(const std::string& problem) {
+  constexpr double kLookAgain_s = 2;  // for cameras that are plugged in
   problem_ = problem;
-  const std::vector<Way> all = ways();
+  double looked_s = -kLookAgain_s;
   window_.set_title("duoptic view: choose a source");
   while (!window_.closing() && !Interrupt::asked()) {
+    if (glfwGetTime() - looked_s >= kLookAgain_s) look_for_ways(), looked_s = glfwGetTime();
     Window::wait(ImGui::IsAnyMouseDown() ? 0.01 : 0.1);
     for (const int key : window_.keys()) {
       if (key == GLFW_KEY_Q) return std::nullopt;
       if (key == GLFW_KEY_F12) window_.want_screenshot();
       const auto number = static_cast<std::size_t>(key - GLFW_KEY_1);
-      if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9 && number < all.size()) return all[number].choice;
+      if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9 && number < ways_.size()) return ways_[number].choice;
     }
     if (auto dropped = take_dropped()) return dropped;
     if (!window_.begin()) continue;
-    auto chosen = draw(all);
+    auto chosen = draw();
     window_.end();
     window_.write_screenshot();
     if (chosen && chosen->rig.empty()) chosen->rig = rig_;
@@ -84,7 +94,7 @@ std::optional<SourceChoice> StartPage::take_dropped() {
   return SourceChoice{dropped_.left, dropped_.right, rig_};
 }
 
-std::optional<SourceChoice> StartPage::draw(const std::vector<Way>& ways) {
+std::optional<SourceChoice> StartPage::draw() {
   std::optional<SourceChoice> out;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float scale = window_.scale(), width = std::min(size.x - 40 * scale, 620 * scale);
@@ -99,8 +109,8 @@ std::optional<SourceChoice> StartPage::draw(const std::vector<Way>& ways) {
   if (!rig_.empty()) put_text(kAccent, "rig: " + short_name(rig_));
   if (!problem_.empty()) put_text(kBad, problem_);
   ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, {0, 0.5f});
-  for (std::size_t i = 0; i < ways.size(); ++i) {
-    const Way& way = ways[i];
+  for (std::size_t i = 0; i < ways_.size(); ++i) {
+    const Way& way = ways_[i];
     if (!way.title.empty()) ImGui::Dummy({0, 6 * scale}), put_text(kText, way.title, title_font());
     if (ImGui::Button(fmt::format("{}   {}##{}", i + 1, way.name, i).c_str(), {0.55f * width, 0})) out = way.choice;
     ImGui::SameLine();
@@ -108,6 +118,11 @@ std::optional<SourceChoice> StartPage::draw(const std::vector<Way>& ways) {
     ImGui::TextDisabled("%s", way.note.c_str());
   }
   ImGui::PopStyleVar();
+  if (!no_cameras_.empty()) {
+    ImGui::Dummy({0, 6 * scale});
+    put_text(kText, "No cameras", title_font());
+    put_text(kFaint, no_cameras_ + ". What is plugged in appears here.");
+  }
   ImGui::End();
   return out;
 }

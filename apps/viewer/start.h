@@ -24,12 +24,13 @@ class StartPage {
     std::string title, name, note;  // title: of those that follow; empty: as before
     SourceChoice choice;
   };
-  static std::vector<Way> ways();
-  std::optional<SourceChoice> draw(const std::vector<Way>& ways);
+  void look_for_ways();
+  std::optional<SourceChoice> draw();
   std::optional<SourceChoice> take_dropped();
 
   Window& window_;
-  std::string rig_, problem_;
+  std::vector<Way> ways_;
+  std::string rig_, problem_, no_cameras_;
   SourceChoice dropped_;  // so far: files may come one after the other
 };
 

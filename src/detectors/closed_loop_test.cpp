@@ -62,12 +62,12 @@ TEST(ClosedLoop, OneHashOnEveryEngine) {
   if (pictures.empty()) GTEST_SKIP() << "no test data";
   for (const BodyModel body : {BodyModel::kLite, BodyModel::kFull}) {
     const std::uint64_t whole = hash_of_loop(pictures, pictures.size(), {.body = body});
-    for (const int threads : {2, 5})
-      EXPECT_EQ(hash_of_loop(pictures, pictures.size(), {.body = body, .threads = threads}), whole) << threads;
+    EXPECT_EQ(hash_of_loop(pictures, pictures.size(), {.body = body, .threads = 2}), whole);
     constexpr std::size_t kFew = 20;  // plain loops take a third of a second a picture
     const std::uint64_t few = hash_of_loop(pictures, kFew, {.body = body, .plain = true});
     test::each_target(
         [&](const std::string& target) { EXPECT_EQ(hash_of_loop(pictures, kFew, {.body = body}), few) << target; });
+    EXPECT_EQ(hash_of_loop(pictures, kFew, {.body = body, .threads = 5}), few);
   }
 }
 
