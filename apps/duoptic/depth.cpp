@@ -158,7 +158,7 @@ struct Summary {
   Next end = Next::kEnd;
 };
 
-Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::App& app) {
+Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::App& app, Progress& progress) {
   Summary summary;
   FrameFiles files = files_of(options);
   files.cloud.metric = pipeline.header().metric;
@@ -170,7 +170,7 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
                  fmt::format("cannot use --frames with {}: it is for the frames of videos", options.left)};
   bool beyond = false;  // the range
   DepthOfAll depth_of_all;
-  Progress progress(app, pipeline.count(), options.quiet);
+  progress.expect(pipeline.count());
   if (pipeline.live()) Interrupt::is_the_end();
   while (!Interrupt::asked()) {
     DUO_TRY_ASSIGN(summary.end, pipeline.next());
@@ -290,9 +290,12 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   }
   frames.wants.confidence = files_of(options).has(FrameOutput::kConfidence);
   DUO_TRY_ASSIGN(frames.rows, rows_of(options, frames, input.pairs->live()));
+  Progress progress(app, 0, options.quiet);
+  frames.progress = [&progress](double done) { progress.part(done); };
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
   DUO_TRY(look_at(pipeline, options));
-  DUO_TRY_ASSIGN(const Summary summary, process(pipeline, options, app));
+  DUO_TRY_ASSIGN(const Summary summary, process(pipeline, options, app, progress));
+  progress.end();
   print(summary, pipeline, options);
   if (const std::string warning = pipeline.warning(); !warning.empty()) say(app, "warning: " + warning);
   return summary.end == Next::kCut ? Exit::kCut : Exit::kOk;

@@ -14,6 +14,7 @@
 #include "duoptic/peers.h"
 #include "duoptic/sink.h"
 #include "eval_clip.h"
+#include "progress.h"
 #include "timing.h"
 
 namespace duo::app::eval {
@@ -24,12 +25,15 @@ namespace fs = std::filesystem;
 constexpr char kFooter[] =
     "A scene is a folder with left.png, right.png, disp_left.png and meta.json (gt_scale, ndisp, eval_border), and the "
     "official\n"
-    "masks mask_nonocc.png and mask_disc.png if there are any; DIR is a scene or a folder of scenes. Searches [0, ndisp).\n"
+    "masks mask_nonocc.png and mask_disc.png if there are any; DIR is a scene or a folder of scenes, and of several folders "
+    "each\n"
+    "has its own mean. Searches [0, ndisp).\n"
     "Numbers: bad pixels in %, at 0.5, 1 and 2 px, in the regions nonocc, all and disc of the Middlebury evaluation version "
     "2;\n"
     "filled = each hole takes the smaller of its nearest neighbours on the row; holes bad = a hole counts as wrong.\n\n"
     "Examples:\n"
     "  duoptic eval middlebury data/middlebury\n"
+    "  duoptic eval middlebury data/middlebury data/middlebury_walls\n"
     "  duoptic eval middlebury teddy cones --preset thesis --no-peers --json\n"
     "  duoptic eval middlebury data/middlebury --perturb";
 
@@ -57,9 +61,11 @@ struct MethodScores {
   std::vector<SceneScore> scenes;
 };
 
-Result<Image<float>> match(const StereoScene& scene, const EngineOptions& options, bool keep_rows, double& ms) {
+Result<Image<float>> match(const StereoScene& scene, const EngineOptions& options, bool keep_rows, Progress& progress,
+                           double& ms) {
   DUO_TRY_ASSIGN(const auto engine, make_engine(options.engine, options.threads));
   Setup setup = options.setup();
+  setup.progress = [&progress](double done) { progress.part(done); };
   setup.size = scene.pair.left.pixels.size();
   setup.max_disparity = scene.max_disparity;
   if (!keep_rows) {
@@ -124,6 +130,16 @@ bool has_v2(const MethodScores& method) {
   return names.size() == kThesis.size() && v2_scenes(method).scenes.size() == kThesis.size();
 }
 
+/// By threshold.
+nlohmann::json means_of(const MethodScores& method) {
+  nlohmann::json out = {{"bad_filled_percent", nlohmann::json::array()}, {"bad_holes_percent", nlohmann::json::array()}};
+  for (std::size_t t = 0; t < kBadThresholds_px.size(); ++t) {
+    out["bad_filled_percent"].push_back(mean(method, filled, t));
+    out["bad_holes_percent"].push_back(mean(method, holes_bad, t));
+  }
+  return out;
+}
+
 nlohmann::json to_json(const MethodScores& method) {
   nlohmann::json scenes = nlohmann::json::array();
   for (const SceneScore& s : method.scenes)
@@ -134,16 +150,8 @@ nlohmann::json to_json(const MethodScores& method) {
                       {"coverage_percent", s.score.coverage_percent},
                       {"ms", s.ms}});
   nlohmann::json out = {{"method", method.method}, {"scenes", scenes}};
-  const auto means = [](const MethodScores& m) {
-    nlohmann::json j = {{"bad_filled_percent", nlohmann::json::array()}, {"bad_holes_percent", nlohmann::json::array()}};
-    for (std::size_t t = 0; t < kBadThresholds_px.size(); ++t) {
-      j["bad_filled_percent"].push_back(mean(m, filled, t));
-      j["bad_holes_percent"].push_back(mean(m, holes_bad, t));
-    }
-    return j;
-  };
-  out["mean"] = means(method);
-  if (has_v2(method)) out["v2_mean"] = means(v2_scenes(method));
+  out["mean"] = means_of(method);
+  if (has_v2(method)) out["v2_mean"] = means_of(v2_scenes(method));
   return out;
 }
 
@@ -158,16 +166,18 @@ void print_ours(const MethodScores& ours) {
                s.score.coverage_percent, s.ms);
 }
 
-void print_means(const std::vector<MethodScores>& methods, bool v2) {
-  fmt::print("\nMean over {} (nonocc, all and disc of each scene):\n{:<28} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
-             v2 ? "tsukuba, venus, teddy, cones: the version-2 mean" : "all scenes", "", "1 filled", "1 holes", ".5 filled",
-             ".5 holes", "2 filled", "2 holes");
-  for (const MethodScores& all : methods) {
-    const MethodScores m = v2 ? v2_scenes(all) : all;
+void print_means(const std::vector<MethodScores>& methods, const std::string& of) {
+  fmt::print("\nMean over {} (nonocc, all and disc of each scene):\n{:<28} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", of, "",
+             "1 filled", "1 holes", ".5 filled", ".5 holes", "2 filled", "2 holes");
+  for (const MethodScores& m : methods)
     fmt::print("{:<28} {:9.2f} {:9.2f} {:9.2f} {:9.2f} {:9.2f} {:9.2f}\n", m.method, mean(m, filled, 1), mean(m, holes_bad, 1),
                mean(m, filled, 0), mean(m, holes_bad, 0), mean(m, filled, 2), mean(m, holes_bad, 2));
-  }
-  if (!v2) return;
+}
+
+void print_v2_means(const std::vector<MethodScores>& methods) {
+  std::vector<MethodScores> of_v2;
+  for (const MethodScores& m : methods) of_v2.push_back(v2_scenes(m));
+  print_means(of_v2, "tsukuba, venus, teddy, cones: the version-2 mean");
   fmt::print("{:<28} {:9.2f}   as printed there:", "thesis of 2010", kThesisMean);
   for (const auto& [scene, p] : kThesis) fmt::print(" {} {:.1f} {:.1f} {:.1f}", scene, p[0], p[1], p[2]);
   fmt::print("\n\"tuned\" is the best of a grid search on these four scenes; it flatters OpenCV.\n");
@@ -200,7 +210,8 @@ Contest contest(const Options& all) {
 }
 
 Result<std::vector<MethodScores>> score_contest(const Contest& contest, const std::vector<StereoScene>& scenes,
-                                                const Perturbation& how) {
+                                                const Perturbation& how, const CLI::App& app) {
+  Progress progress(app, static_cast<std::int64_t>(scenes.size()), false, "scene");
   std::vector<MethodScores> out;
   for (const std::string& name : contest.names) out.push_back({name, {}});
   for (const StereoScene& scene : scenes) {
@@ -208,16 +219,17 @@ Result<std::vector<MethodScores>> score_contest(const Contest& contest, const st
     worse.regions = {scene.regions.all.clone(), scene.regions.nonocc.clone(), scene.regions.disc.clone()};
     for (std::size_t i = 0; i < contest.ours.size(); ++i) {
       double ms = 0;
-      DUO_TRY_ASSIGN(const Image<float> d_px, match(worse, contest.ours[i], contest.keep_rows, ms));
+      DUO_TRY_ASSIGN(const Image<float> d_px, match(worse, contest.ours[i], contest.keep_rows, progress, ms));
       out[i].scenes.push_back({scene.name, score_disparity(d_px, worse), ms});
     }
     for (std::size_t i = 0; i < contest.peers.size(); ++i)
       out[contest.ours.size() + i].scenes.push_back(score_peer(contest.peers[i], worse, contest.ours[0].threads));
+    progress.frame(static_cast<std::int64_t>(out[0].scenes.size()));
   }
   return out;
 }
 
-Result<Exit> run_perturbed(const Options& options) {
+Result<Exit> run_perturbed(const Options& options, const CLI::App& app) {
   Interrupt::end_at_once();
   DUO_TRY_ASSIGN(const auto folders, find_scenes({options.folders.begin(), options.folders.end()}));
   std::vector<StereoScene> scenes;
@@ -226,7 +238,7 @@ Result<Exit> run_perturbed(const Options& options) {
     scenes.push_back(std::move(scene));
   }
   const Contest all = contest(options);
-  DUO_TRY_ASSIGN(const auto clean, score_contest(all, scenes, {.name = "as they are"}));
+  DUO_TRY_ASSIGN(const auto clean, score_contest(all, scenes, {.name = "as they are"}, app));
   nlohmann::json rows = nlohmann::json::array();
   if (!options.json) {
     fmt::print(
@@ -240,7 +252,7 @@ Result<Exit> run_perturbed(const Options& options) {
     fmt::print("\n");
   }
   for (const Perturbation& how : perturbations()) {
-    DUO_TRY_ASSIGN(const auto worse, score_contest(all, scenes, how));
+    DUO_TRY_ASSIGN(const auto worse, score_contest(all, scenes, how, app));
     nlohmann::json row = {{"fault", how.name}, {"methods", nlohmann::json::array()}};
     if (!options.json) fmt::print("{:<16}", how.name);
     for (std::size_t i = 0; i < worse.size(); ++i) {
@@ -261,9 +273,35 @@ Result<Exit> run_perturbed(const Options& options) {
   return Exit::kOk;
 }
 
-Result<Exit> run(const Options& options) {
+/// Scenes of one folder that was named, among several.
+struct Folder {
+  std::string name;
+  std::size_t begin = 0, end = 0;
+  MethodScores of(const MethodScores& all) const {
+    const auto at = [&](std::size_t i) { return all.scenes.begin() + static_cast<std::ptrdiff_t>(i); };
+    return {all.method, {at(begin), at(end)}};
+  }
+};
+
+/// All scenes in their order; in `groups` the folders that hold several, where there are others beside them.
+///
+/// Errors  those of find_scenes()
+Result<std::vector<fs::path>> find_scenes_of(const std::vector<std::string>& names, std::vector<Folder>& groups) {
+  std::vector<fs::path> all;
+  for (const std::string& name : names) {
+    DUO_TRY_ASSIGN(const auto found, find_scenes({fs::path(name)}));
+    if (found.size() > 1)
+      groups.push_back({fs::weakly_canonical(name).filename().string(), all.size(), all.size() + found.size()});
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  if (names.size() == 1) groups.clear();
+  return all;
+}
+
+Result<Exit> run(const Options& options, const CLI::App& app) {
   if (options.output.empty()) Interrupt::end_at_once();
-  DUO_TRY_ASSIGN(const auto folders, find_scenes({options.folders.begin(), options.folders.end()}));
+  std::vector<Folder> groups;
+  DUO_TRY_ASSIGN(const auto folders, find_scenes_of(options.folders, groups));
   // Ours as asked for; then, where that leaves holes, filled by ourselves; then the peers.
   std::vector<EngineOptions> ours = {options.engine};
   if (!options.engine.fill) ours.push_back(options.engine), ours.back().fill = true;
@@ -272,13 +310,14 @@ Result<Exit> run(const Options& options) {
   const std::size_t first_peer = methods.size();
   if (!options.no_peers)
     for (const Peer& peer : accuracy_peers()) methods.push_back({fmt::format("OpenCV {}", peer.name), {}});
+  Progress progress(app, static_cast<std::int64_t>(folders.size()), false, "scene");
   for (const fs::path& folder : folders) {
     if (Interrupt::asked()) return stopped("all scenes were scored");
     DUO_TRY_ASSIGN(const StereoScene scene, load_scene(folder));
     std::vector<Image<float>> d_px;
     for (std::size_t i = 0; i < ours.size(); ++i) {
       double ms = 0;
-      DUO_TRY_ASSIGN(Image<float> found, match(scene, ours[i], options.keep_rows, ms));
+      DUO_TRY_ASSIGN(Image<float> found, match(scene, ours[i], options.keep_rows, progress, ms));
       methods[i].scenes.push_back({scene.name, score_disparity(found, scene), ms});
       d_px.push_back(std::move(found));
     }
@@ -289,19 +328,31 @@ Result<Exit> run(const Options& options) {
       DUO_TRY(write_png(draw_errors(d_px[0], scene), out / (scene.name + "_errors.png")));
       DUO_TRY(out.publish());
     }
+    progress.frame(static_cast<std::int64_t>(methods[0].scenes.size()));
   }
+  progress.end();
   const bool v2 = has_v2(methods[0]);
   if (options.json) {
     nlohmann::json out = {
         {"thresholds_px", kBadThresholds_px}, {"regions", {"nonocc", "all", "disc"}}, {"methods", nlohmann::json::array()}};
     for (const MethodScores& m : methods) out["methods"].push_back(to_json(m));
     if (v2) out["thesis_v2_mean_percent"] = kThesisMean;
+    for (const Folder& group : groups) {
+      nlohmann::json of_methods = nlohmann::json::array();
+      for (const MethodScores& m : methods) of_methods.push_back({{"method", m.method}, {"mean", means_of(group.of(m))}});
+      out["folders"].push_back({{"folder", group.name}, {"methods", of_methods}});
+    }
     fmt::print("{}\n", out.dump(2));
     return Exit::kOk;
   }
   print_ours(methods[0]);
-  if (v2) print_means(methods, true);
-  if (!v2 || methods[0].scenes.size() > kThesis.size()) print_means(methods, false);
+  if (v2) print_v2_means(methods);
+  for (const Folder& group : groups) {
+    std::vector<MethodScores> of_group;
+    for (const MethodScores& m : methods) of_group.push_back(group.of(m));
+    print_means(of_group, "the scenes of " + group.name);
+  }
+  if (!v2 || methods[0].scenes.size() > kThesis.size()) print_means(methods, "all scenes");
   return Exit::kOk;
 }
 
@@ -323,9 +374,9 @@ Command add(CLI::App& app) {
   middlebury->add_option("-o,--output", options->output, "Folder for pictures of the errors")->type_name("DIR");
   middlebury->footer(kFooter);
   const Command clip = eval_clip::add(*sub);
-  return {sub, [options, clip] {
+  return {sub, [options, clip, middlebury] {
             if (clip.app->parsed()) return clip.run();
-            return options->perturb ? run_perturbed(*options) : run(*options);
+            return options->perturb ? run_perturbed(*options, *middlebury) : run(*options, *middlebury);
           }};
 }
 

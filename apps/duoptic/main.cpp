@@ -38,7 +38,7 @@ Error stopped(const std::string& before) {
   return {ErrorCode::kBadInput, fmt::format("stopped before {}; nothing was written", before)};
 }
 
-void say(const CLI::App& app, const std::string& line) { put_on_stderr(fmt::format("duoptic {}: {}\n", app.get_name(), line)); }
+void say(const CLI::App& app, const std::string& line) { put_on_stderr(fmt::format("duoptic {}: {}\n", name_of(app), line)); }
 
 namespace {
 

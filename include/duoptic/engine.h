@@ -1,6 +1,7 @@
 // The engine turns a pair into a frame: denoise, rectify, match, check, depth.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -50,6 +51,9 @@ struct Setup {
   Wants wants;
   bool many_at_once = false;  // threads of the CPU make frames of their own, several at once: more of them, each later
   bool time_stages = false;
+  /// How much of the frame in work is done, 0 .. 1, from matchers that take seconds (fine), where no others are made meanwhile.
+  /// Called in the thread of submit().
+  std::function<void(double done)> progress = {};
 };
 
 /// A part of a frame: a window of the left rectified picture, and the disparities in it.

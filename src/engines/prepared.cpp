@@ -58,7 +58,8 @@ Result<Prepared> prepare_setup(const Setup& setup) {
 }
 
 MatchSetup match_setup(const Prepared& prepared) {
-  return {prepared.size, prepared.setup.max_disparity, prepared.rectification.has_value(), prepared.stream};
+  return {prepared.size, prepared.setup.max_disparity, prepared.rectification.has_value(), prepared.stream,
+          prepared.setup.progress};
 }
 
 float focal_baseline_px_mm(const Rectified& geometry) {

@@ -36,9 +36,8 @@ class RefEngine final : public Engine {
     if (setup.fill) {
       unfilled_ = Image<std::uint16_t>(prepared_.size);
     }
-    const Size color_size = prepared_.match_color ? prepared_.size : Size{};
-    left_color_ = Image<Rgb8>(color_size);
-    right_color_ = Image<Rgb8>(color_size);
+    left_color_ = Image<Rgb8>(prepared_.match_color && !prepared_.color ? prepared_.size : Size{});
+    right_color_ = Image<Rgb8>(prepared_.match_color ? prepared_.size : Size{});
     filled_ = Image<std::uint16_t>(prepared_.match_fill ? prepared_.size : Size{});
     now_ = Image<std::uint8_t>(setup.size);
     next_ = Image<std::uint8_t>(setup.size);
@@ -66,10 +65,13 @@ class RefEngine final : public Engine {
 
     Disparity& disparity = frame.disparity;
     GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside};
+    if (prepared_.color) prepare_color(pair.left, maps != nullptr ? &maps->left : nullptr, frame.color);
+    timer_.stage("color");
     if (prepared_.match_color) {
-      prepare_color(pair.left, maps != nullptr ? &maps->left : nullptr, left_color_);
+      if (!prepared_.color) prepare_color(pair.left, maps != nullptr ? &maps->left : nullptr, left_color_);
       prepare_color(pair.right, maps != nullptr ? &maps->right : nullptr, right_color_);
-      gray.left_color = left_color_, gray.right_color = right_color_;
+      gray.left_color = prepared_.color ? frame.color : left_color_;
+      gray.right_color = right_color_;
     }
     const bool whole = !can_focus() || focus_.window.within(prepared_.size).empty();
     if (whole)
@@ -86,8 +88,6 @@ class RefEngine final : public Engine {
     timer_.stage("fill");
     if (setup.wants.depth) ref::depth(disparity.d_q4, focal_baseline_px_mm(*prepared_.geometry), frame.depth_mm);
     timer_.stage("depth");
-    if (prepared_.color) prepare_color(pair.left, maps != nullptr ? &maps->left : nullptr, frame.color);
-    timer_.stage("color");
   }
 
   std::shared_ptr<const Frame> collect() override { return std::exchange(current_, nullptr); }
@@ -141,7 +141,7 @@ class RefEngine final : public Engine {
   ObjectPool<Frame> frames_;
   std::shared_ptr<Frame> current_;  // until it is collected
   Image<std::uint16_t> unfilled_;
-  Image<Rgb8> left_color_, right_color_;  // of matchers that take colours
+  Image<Rgb8> left_color_, right_color_;  // of matchers that take colours; the left one where the frame has none
   Image<std::uint16_t> filled_;           // and what those that know say of holes
   Image<std::uint8_t> now_, next_;        // one view on its way through the denoising
   StageTimer timer_;

@@ -139,6 +139,7 @@ class SimdEngine final : public Engine {
     const int at_once = frames_at_once(prepared_.setup, threads_);
     prepared_.stream = std::make_shared<ClearStream>();  // a new one also where the last setup comes back
     turn_ = 0;
+    if (at_once > 1) prepared_.setup.progress = {};
     try {
       for (int i = 0; at_once > 1 && i < at_once; ++i) {
         auto thread = FrameThread::start(prepared_, threads_ / at_once + (i < threads_ % at_once));

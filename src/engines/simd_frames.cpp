@@ -20,7 +20,8 @@ SimdFrames::SimdFrames(const Prepared& prepared, int threads) : prepared_(prepar
   Matchers::make(pool_, prepared.matcher, match_setup(prepared), matcher_);
   if (prepared.setup.fill) filling_.emplace(prepared.size, prepared.setup.max_disparity);
   if (prepared.diffusion) diffusion_.emplace(prepared.setup.size);
-  if (prepared.match_color) left_color_ = Image<Rgb8>(prepared.size), right_color_ = Image<Rgb8>(prepared.size);
+  if (prepared.match_color && !prepared.color) left_color_ = Image<Rgb8>(prepared.size);
+  if (prepared.match_color) right_color_ = Image<Rgb8>(prepared.size);
   if (prepared.match_fill) filled_ = Image<std::uint16_t>(prepared.size);
   now_ = Image<std::uint8_t>(prepared.setup.size);
   next_ = Image<std::uint8_t>(prepared.setup.size);
@@ -49,9 +50,10 @@ void SimdFrames::make(const Pair& pair, std::span<const Window> windows, const F
     const RowBand matched = setup.fill ? RowBand{} : RowBand::of(windows, prepared_.size);
     GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside, turn};
     if (prepared_.match_color) {
-      prepare_color(pair.left, maps != nullptr ? &maps->left : nullptr, left_color_);
+      if (!prepared_.color) prepare_color(pair.left, maps != nullptr ? &maps->left : nullptr, left_color_);
       prepare_color(pair.right, maps != nullptr ? &maps->right : nullptr, right_color_);
-      gray.left_color = left_color_, gray.right_color = right_color_;
+      gray.left_color = prepared_.color ? frame.color : left_color_;
+      gray.right_color = right_color_;
     }
     const Match found{disparity.d_q4, frame.confidence, filled_};
     std::visit([&](auto& matcher) { matcher.match(gray, found, timer_, matched); }, *matcher_);

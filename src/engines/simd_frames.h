@@ -41,7 +41,7 @@ class SimdFrames {
   Focused<Matchers::Simd> focused_;
   std::optional<Filling> filling_;
   std::optional<simd::DiffusionScratch> diffusion_;
-  Image<Rgb8> left_color_, right_color_;  // of matchers that take colours
+  Image<Rgb8> left_color_, right_color_;  // of matchers that take colours; the left one where the frame has none
   Image<std::uint16_t> filled_;           // and what those that know say of holes
   Image<std::uint8_t> now_, next_;        // one view on its way through the denoising
   StageTimer timer_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "duoptic/image.h"
@@ -14,6 +15,7 @@ struct MatchSetup {
   int max_disparity = 0;                                                  // searches [0, max_disparity)
   bool masked = false;                                                    // pairs come with inside pictures
   std::shared_ptr<ClearStream> stream = std::make_shared<ClearStream>();  // shared by all who match pairs of one stream
+  std::function<void(double done)> progress = {};                         // of matchers that take seconds; see Setup
 };
 
 /// Where the maps go. Confidence, of the matchers that tell it: 1 (doubtful) .. 255 (sure) where there is a disparity, else 0.

@@ -111,6 +111,16 @@ TEST_F(Desk, BecomesASceneThatEvalScores) {
   const auto scene = scored.json()["methods"][1]["scenes"][0];
   EXPECT_LT(scene["bad_filled_percent"][1][0], 5) << scored.out;
   EXPECT_GT(scene["coverage_percent"], 80);
+  // Of a folder beside another the mean is told by itself.
+  for (const char* name : {"room/one", "room/two"}) fs::create_directories(at("room")), fs::copy(at("desk"), at(name));
+  const Ended several = test::run_tool(at(""), "eval middlebury room desk --no-peers --json");
+  ASSERT_EQ(several.exit, 0) << several.err;
+  const auto folders = several.json()["folders"];
+  ASSERT_EQ(folders.size(), 1u) << several.out;
+  EXPECT_EQ(folders[0]["folder"], "room");
+  EXPECT_EQ(folders[0]["methods"][1]["mean"], scored.json()["methods"][1]["mean"]);
+  EXPECT_NE(test::run_tool(at(""), "eval middlebury room desk --no-peers").out.find("Mean over the scenes of room"),
+            std::string::npos);
 }
 
 TEST_F(Desk, OneLineSaysWhatIsWrong) {
@@ -142,7 +152,9 @@ TEST_F(Desk, OneLineSaysWhatIsWrong) {
   copy("unnamed");
   fs::remove(at("unnamed/patterns.json"));
   EXPECT_NE(why("decode unnamed").find("patterns.json"), std::string::npos);
-  EXPECT_EQ(run("decode unnamed --patterns shots/patterns.json -o named --quiet").exit, 0);
+  const Ended named = run("decode unnamed --patterns shots/patterns.json -o named --quiet");
+  EXPECT_EQ(named.exit, 0);
+  EXPECT_EQ(named.err.find("duoptic truth decode: warning: left.png is dark"), 0u) << named.err;
   // A projector that was off, or seen by one camera alone.
   copy("dark");
   for (std::size_t i = 1; i < light_patterns(kCode).size(); ++i)

@@ -2,6 +2,8 @@
 // method.
 #pragma once
 
+#include <functional>
+
 #include "core/clock.h"
 #include "core/pool.h"
 #include "matchers/fine/fine_params.h"
@@ -35,6 +37,23 @@ struct FineMaps {
   FineMaps(Size size);
 };
 
+/// Ends the stages of a frame, for the timer and for who waits for the frame.
+class FineStages {
+ public:
+  FineStages(StageTimer& timer_, const std::function<void(double)>& progress) : timer(timer_), progress_(progress) {}
+  /// `percent`: about its share of the frame's time.
+  void end(const char* stage, int percent) {
+    timer.stage(stage);
+    percent_ += percent;
+    if (progress_) progress_(percent_ / 100.0);
+  }
+  StageTimer& timer;
+
+ private:
+  const std::function<void(double)>& progress_;
+  int percent_ = 0;
+};
+
 /// Disparities of the left view's planes where the planes of the mirrored view agree: at the pixel that a plane leads to, which
 /// must lie in the picture and be inside, as the left one, they differ by at most `tolerance` px.
 ///
@@ -55,11 +74,12 @@ class Fine {
   void match(const GrayPair& pair, const Match& out, StageTimer& timer);
 
  private:
-  void view(const GrayPair& pair, Sgm& sgm, std::optional<bool> clear, PlaneMap& planes, StageTimer& timer);
+  void view(const GrayPair& pair, Sgm& sgm, std::optional<bool> clear, PlaneMap& planes, FineStages& stages);
   void fill(const GrayPair& pair);
 
   FineParams params_;
   int max_disparity_;
+  std::function<void(double)> progress_;
   Sgm sgm_, mirrored_sgm_;
   MirroredPair mirrored_;
   FineMaps maps_;
@@ -76,12 +96,13 @@ class Fine {
   void match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows = {});
 
  private:
-  void view(const GrayPair& pair, Sgm& sgm, std::optional<bool> clear, PlaneMap& planes, StageTimer& timer);
+  void view(const GrayPair& pair, Sgm& sgm, std::optional<bool> clear, PlaneMap& planes, FineStages& stages);
   void fill(const GrayPair& pair);
 
   Pool& pool_;
   FineParams params_;
   int max_disparity_;
+  std::function<void(double)> progress_;
   Sgm sgm_, mirrored_sgm_;
   MirroredPair mirrored_;
   FineMaps maps_;

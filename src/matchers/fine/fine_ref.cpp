@@ -11,6 +11,7 @@ namespace duo::ref {
 Fine::Fine(const FineParams& params, const MatchSetup& setup)
     : params_(params),
       max_disparity_(setup.max_disparity),
+      progress_(setup.progress),
       sgm_(params.sgm(), setup),
       mirrored_sgm_(params.sgm(), setup),
       mirrored_(setup.size, setup.masked),
@@ -18,33 +19,34 @@ Fine::Fine(const FineParams& params, const MatchSetup& setup)
 
 void Fine::match(const GrayPair& pair, const Match& out, StageTimer& timer) {
   DUO_CHECK(pair.left_color.size() == pair.size() && pair.right_color.size() == pair.size());
-  view(pair, sgm_, {}, maps_.left, timer);
-  view(mirrored_.of(pair), mirrored_sgm_, sgm_.clear(), maps_.mirrored, timer);
+  FineStages stages(timer, progress_);
+  view(pair, sgm_, {}, maps_.left, stages);
+  view(mirrored_.of(pair), mirrored_sgm_, sgm_.clear(), maps_.mirrored, stages);
   const View<std::uint16_t> checked = params_.smooth != 0 ? maps_.median.view() : out.d_q4;
   check_planes(pair, maps_.left, maps_.mirrored, params_.tolerance, checked);
   ref::remove_speckle(checked, SgmParams{}.speckle_step_q4, params_.speckle);
   if (params_.smooth != 0) ref::color_median({checked, pair.left_color}, out.d_q4);
-  timer.stage("check_planes");
+  stages.end("check_planes", 10);
   if (out.filled.empty()) return;
   for (int y = 0; y < out.d_q4.height(); ++y) std::copy_n(out.d_q4.row(y), out.d_q4.width(), maps_.whole.d_q4.row(y));
   fill(pair);
   for (int y = 0; y < out.d_q4.height(); ++y)
     for (int x = 0; x < out.d_q4.width(); ++x) maps_.holes.at(y, x) = out.d_q4.at(y, x) == Disparity::kNone;
   ref::color_median({maps_.whole.d_q4, pair.left_color, maps_.holes, ColorMedian::kMostRadius}, out.filled);
-  timer.stage("vote");
+  stages.end("vote", 10);
 }
 
 /// Its planes, from what sgm finds on.
-void Fine::view(const GrayPair& pair, Sgm& sgm, std::optional<bool> clear, PlaneMap& planes, StageTimer& timer) {
-  sgm.match(pair, {maps_.whole.d_q4}, timer, clear);
+void Fine::view(const GrayPair& pair, Sgm& sgm, std::optional<bool> clear, PlaneMap& planes, FineStages& stages) {
+  sgm.match(pair, {maps_.whole.d_q4}, stages.timer, clear);
   fill(pair);
   ref::fit_planes({pair.left_color, maps_.whole.d_q4, max_disparity_}, planes);
-  timer.stage("fit_planes");
+  stages.end("fit_planes", 15);
   EnergyVolume energies(pair.size(), max_disparity_);
   ref::energy_volume(sgm.compared(), energies);
-  timer.stage("energy_volume");
+  stages.end("energy_volume", 4);
   ref::slanted_planes({energies, pair.left_color}, planes);
-  timer.stage("slanted_planes");
+  stages.end("slanted_planes", 21);
 }
 
 void Fine::fill(const GrayPair& pair) {

@@ -1,6 +1,8 @@
 #include "matchers/fine/fine.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "duoptic/engine.h"
 #include "tests/agree.h"
@@ -33,13 +35,14 @@ struct SlantedPair {
   static double disparity(int x) { return 5 + x / 16.0; }
 };
 
-std::shared_ptr<const Frame> frame_of(const char* engine_name, int threads, const Pair& pair, bool fill) {
+std::shared_ptr<const Frame> frame_of(const char* engine_name, int threads, const Pair& pair, bool fill, bool color = false) {
   auto engine = make_engine(engine_name, threads);
   duo::Setup setup;
   setup.size = pair.left.pixels.size();
   setup.matcher = "fine";
   setup.max_disparity = 16;
   setup.fill = fill;
+  setup.wants.color = color;
   const auto ready = (*engine)->prepare(setup);
   EXPECT_TRUE(ready) << ready.error().what;
   (*engine)->submit(pair);
@@ -66,6 +69,44 @@ TEST(Fine, EnginesAgree) {
       test::expect_same<std::uint16_t>(want->disparity.d_q4, got->disparity.d_q4, "fine, threads " + std::to_string(threads));
       test::expect_same<std::uint8_t>(want->disparity.origin, got->disparity.origin, "origin");
     }
+  }
+}
+
+// Where one frame is made at a time, whoever waits for it is told; of several at once nobody could say which.
+TEST(Fine, TellsHowMuchIsDone) {
+  const SlantedPair scene({40, 20});
+  const auto told_of = [&](const char* matcher, bool many_at_once) {
+    auto engine = make_engine("simd", 2);
+    std::vector<double> told;
+    duo::Setup setup;
+    setup.size = scene.pair.left.pixels.size();
+    setup.matcher = matcher;
+    setup.max_disparity = 16;
+    setup.fill = true;
+    setup.many_at_once = many_at_once;
+    setup.progress = [&told](double done) { told.push_back(done); };
+    EXPECT_TRUE((*engine)->prepare(setup).has_value());
+    (*engine)->submit(scene.pair);
+    EXPECT_TRUE((*engine)->collect() != nullptr);
+    return told;
+  };
+  const std::vector<double> told = told_of("fine", false);
+  ASSERT_GE(told.size(), 4u);
+  EXPECT_GT(told.front(), 0);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_DOUBLE_EQ(told.back(), 1);
+  EXPECT_TRUE(told_of("fine", true).empty());
+  EXPECT_TRUE(told_of("sgm", false).empty());
+}
+
+// The picture's own colours serve the matcher, too.
+TEST(Fine, ColorsMayBeWantedToo) {
+  const SlantedPair scene({40, 20});
+  for (const char* name : {"ref", "simd"}) {
+    const auto plain = frame_of(name, 1, scene.pair, false), colored = frame_of(name, 1, scene.pair, false, true);
+    test::expect_same<std::uint16_t>(plain->disparity.d_q4, colored->disparity.d_q4, name);
+    ASSERT_EQ(colored->color.size(), scene.pair.left.pixels.size());
+    for (int x = 0; x < 40; ++x) EXPECT_EQ(colored->color.at(7, x), scene.pair.left.pixels.at(7, x));
   }
 }
 
