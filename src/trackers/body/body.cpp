@@ -5,7 +5,7 @@
 namespace duo::body {
 namespace {
 
-constexpr double kNear_m = 0.25, kFar_m = 15;
+constexpr double kNear_m = kAnyDepth.near_m, kFar_m = kAnyDepth.far_m;
 constexpr double kSeenDrift = 0.9, kHiddenDrift = 0.6;  // share of its step that a joint keeps
 constexpr double kReachBefore_m = 0.95, kReachBehind_m = 0.6;
 
@@ -57,7 +57,7 @@ bool belongs(const SeenHand& hand, const Point& wrist, double px_per_m) {
 
 std::optional<Body> Body::start(const FrameView& frame, const SeenBody& seen) {
   constexpr double kLeastScale = 0.5, kMostScale = 1.4, kStartSigma_m = 0.12, kBehind_m = 0.1;
-  const double z = trunk_depth(frame.depth, corners_of(seen), {kNear_m, kFar_m});
+  const double z = trunk_depth(frame.depth, corners_of(seen), kAnyDepth);
   if (z == 0 || !stands_out(frame.depth, corners_of(seen))) return std::nullopt;
   // How large the person is: the trunk as it is seen beside the trunk as the network imagines it.
   const Lengths adult;
@@ -112,20 +112,21 @@ Window Body::expected_box(const FrameView& frame) const {
 }
 
 double Body::unlike(const FrameView& frame, const SeenBody& seen) const {
-  constexpr double kNear = 0.6, kNear_depth_m = 0.4, kColor = 0.08, kBright = 0.35, kMostMissed = 10;
+  constexpr double kNear = 0.6, kNear_depth_m = 0.25, kColor = 0.08, kBright = 0.35, kMostOther = 4;
   const auto corners = corners_of(seen);
   const Vec3 expected = expected_trunk();
-  const double z = std::max(expected.z, kNear_m), patience = 1 + 0.3 * std::min<double>(missed_, kMostMissed);
+  const double z = std::max(expected.z, kNear_m);
+  const double aside = 1 + 0.3 * std::min(missed_, 10), along = 1 + 0.15 * std::min(missed_, 20);
   const Vec2 there = frame.depth.geometry->project({expected.x, expected.y, z});
-  const double off = length(there, centre_of(corners)) / (lengths_[Bone::kTrunk] * frame.depth.px_per_m(z) * kNear * patience);
-  const double found = trunk_depth(frame.depth, corners, {kNear_m, kFar_m});
-  const double deep = found > 0 ? (found - trunk_z_m_) / (kNear_depth_m * patience) : 0;
+  const double off = length(there, centre_of(corners)) / (lengths_[Bone::kTrunk] * frame.depth.px_per_m(z) * kNear * aside);
+  const double found = trunk_depth(frame.depth, corners, kAnyDepth);
+  const double deep = found > 0 ? (found - trunk_z_m_) / ((kNear_depth_m + 0.5 * frame.depth.m_per_px(z)) * along) : 0;
   const TrunkColor color = color_of(frame, corners);
   double other = 0;
   if (color.known && color_.known)
     other = (square(color.red - color_.red) + square(color.green - color_.green)) / square(kColor) +
             square((color.bright - color_.bright) / kBright);
-  return std::sqrt(square(off) + square(deep) + std::min(other, 1.0) / 4);
+  return std::sqrt(square(off) + square(deep) + std::min(other, kMostOther) / 4);
 }
 
 void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hands, std::span<const Places* const> nearer) {
@@ -228,7 +229,7 @@ void Body::lift(Scene& scene) const {
 void Body::update(const FrameView& frame, const Scene& scene, const Choices& chosen) {
   constexpr double kStepGain = 0.5, kLongestStep_m = 0.2, kFar_off_m = 0.12, kFar_off_px = 6, kTooFar_m = 0.15;
   constexpr int kSights = 2, kUnsureSights = 6;
-  missed_ = 0;
+  int inside = 0, seen = 0;
   ++age_;
   for (const JointId id : kFreeJoints) {
     State& state = states_[id];
@@ -237,6 +238,8 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     const Point& point = scene.points[id];
     state.seen = chosen[id].on_surface && point.inside && std::abs(p.z - chosen[id].p.z) < kFar_off_m &&
                  length(at, point.at_px) < std::max(kFar_off_px * point.sigma_px, kTooFar_m * frame.depth.px_per_m(p.z));
+    inside += point.inside;
+    seen += state.seen;
     const bool was_hidden = state.hidden > 2;
     // After a gap one sight may be a mistake, and more of a hand that its network does not see.
     const bool hand = id == JointId::kLeftHand || id == JointId::kRightHand;
@@ -255,6 +258,8 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     if (const double now = norm(state.step); now > kLongestStep_m) state.step = (kLongestStep_m / now) * state.step;
     state.sigma_m = fitted_.covariance[id].sigma_m() / std::sqrt(3.0);  // along each axis
   }
+  seen_share_ = static_cast<double>(seen) / std::max(inside, 1);
+  missed_ = seen > 0 ? 0 : missed_ + 1;
   learn_pace();
 }
 

@@ -39,7 +39,12 @@ class Body {
 
   const Places& places() const { return fitted_.places; }
   const Lengths& lengths() const { return lengths_; }
+  /// Frames since anything was seen of the person.
   int missed() const { return missed_; }
+  /// Of the joints that are marked in the picture, how many were seen in the last frame.
+  double seen_share() const { return seen_share_; }
+  /// Depth of the trunk's skin.
+  double trunk_z_m() const { return trunk_z_m_; }
   /// Fills all joints of `person`, whose skeleton is kBody, but for their pixels.
   void publish(const FrameView& frame, Person& person) const;
 
@@ -73,6 +78,7 @@ class Body {
   TrunkColor color_;
   double trunk_z_m_ = 0;
   Vec3 pace_;  // of the trunk's middle from frame to frame, as it walks
+  double seen_share_ = 0;
   int missed_ = 0, age_ = 0;
 };
 

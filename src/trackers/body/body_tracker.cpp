@@ -9,6 +9,7 @@
 #include "detectors/small_hands.h"
 #include "duoptic/detector.h"
 #include "trackers/body/body.h"
+#include "trackers/body/newcomers.h"
 #include "trackers/body/uncover.h"
 
 namespace duo {
@@ -40,6 +41,7 @@ class BodyTracker final : public Tracker {
     bool matched = false;        // with one whom the finder sees
     Uncover* uncover = nullptr;  // while somebody is before or behind this person
     bool covered = false;        // somebody is before
+    int confirmed = 0;           // frames that showed enough of a new person
   };
   /// A tracked person as this frame shows it.
   struct Sight {
@@ -57,7 +59,12 @@ class BodyTracker final : public Tracker {
   void gather(const body::FrameView& frame, std::span<const SeenPerson> seen);
   /// Whether a body that nobody owns lies over one that somebody does: the same person, marked twice.
   bool is_of_another(const body::FrameView& frame, std::span<const SeenPerson> seen, std::size_t which) const;
+  /// Adds where to look for those who are not followed: who was missed, and who is new.
+  void look_elsewhere(const body::FrameView& frame);
   void look_at_hands();
+  /// Those who are gone, and who was taken for somebody by mistake: of a person some joints are seen in each of the first
+  /// frames.
+  void forget();
   void publish(const body::FrameView& frame);
 
   std::optional<Lens> lens_;  // empty before prepare()
@@ -68,6 +75,8 @@ class BodyTracker final : public Tracker {
   std::vector<Tracked*> owners_;       // of each person seen
   std::vector<Sight> sights_;          // the nearest first
   std::vector<TurnedSquare> regions_;  // of those whom the finder does not follow
+  body::Newcomers newcomers_;
+  std::vector<Vec3> trunks_;
   std::vector<const body::Places*> nearer_;
   std::array<Uncover, kMostPeople> uncovers_;
   std::array<SeenBody, kMostPeople> alone_;  // those who overlap with others
@@ -105,6 +114,9 @@ void BodyTracker::reset() {
   people_.reserve(kMostPeople);
   sights_.reserve(kMostPeople);
   nearer_.reserve(kMostPeople);
+  regions_.reserve(kMostPeople + 1);
+  trunks_.reserve(kMostPeople);
+  newcomers_ = {};
   if (detector_)
     finder_ = std::make_unique<PeopleFinder>(
         *detector_, PeopleFinder::Options{.hands = false, .most = kMostPeople, .search_every = kSearchEvery});
@@ -142,18 +154,20 @@ void BodyTracker::match(const body::FrameView& frame, std::span<const SeenPerson
 }
 
 bool BodyTracker::is_of_another(const body::FrameView& frame, std::span<const SeenPerson> seen, std::size_t which) const {
-  constexpr double kMost = 0.6;  // of the smaller box
+  constexpr double kMost = 0.6;      // of the smaller box
+  constexpr double kApart_m = 0.25;  // who is nearer or farther is somebody else
   const Window& box = seen[which].box_px;
-  const auto lies_over = [&](const Window& other) {
+  const double z_m = body::trunk_depth(frame.depth, body::corners_of(seen[which].body), body::kAnyDepth);
+  const auto lies_over = [&](const Window& other, const Tracked& owner) {
     const double width = std::min(box.x_end(), other.x_end()) - std::max(box.x, other.x);
     const double height = std::min(box.y_end(), other.y_end()) - std::max(box.y, other.y);
     const double least = std::min(double(box.width) * box.height, double(other.width) * other.height);
-    return width > 0 && height > 0 && width * height > kMost * least;
+    return width > 0 && height > 0 && width * height > kMost * least && std::abs(owner.body.trunk_z_m() - z_m) < kApart_m;
   };
   for (std::size_t i = 0; i < seen.size(); ++i)
-    if (i != which && owners_[i] != nullptr && lies_over(seen[i].box_px)) return true;
+    if (i != which && owners_[i] != nullptr && lies_over(seen[i].box_px, *owners_[i])) return true;
   return std::ranges::any_of(tracked_, [&](const Tracked& each) {
-    return each.uncover != nullptr && lies_over(each.body.expected_box(frame).within(frame.picture.size()));
+    return each.uncover != nullptr && lies_over(each.body.expected_box(frame).within(frame.picture.size()), each);
   });
 }
 
@@ -176,7 +190,7 @@ void BodyTracker::uncover(const body::FrameView& frame) {
       if (std::min(box.y_end(), beside.y_end()) < std::max(box.y, beside.y)) continue;
       if (each.uncover == nullptr) {
         each.uncover = &uncovers_[used++];
-        each.uncover->begin(frame);
+        each.uncover->begin(frame, each.body.trunk_z_m());
       }
       const double between_m = (z_m + other_z_m) / 2;
       if (other_z_m < z_m)
@@ -191,7 +205,7 @@ void BodyTracker::uncover(const body::FrameView& frame) {
 
 void BodyTracker::gather(const body::FrameView& frame, std::span<const SeenPerson> seen) {
   constexpr std::uint16_t kThere = 16384;  // a probability of 0.5
-  constexpr double kMostCovered = 0.7;
+  constexpr double kMostCovered = 0.85;
   sights_.clear();
   for (std::size_t i = 0; i < seen.size(); ++i)
     if (owners_[i] != nullptr && owners_[i]->uncover == nullptr) sights_.push_back({owners_[i], &seen[i].body, &frame, {}});
@@ -212,6 +226,19 @@ void BodyTracker::gather(const body::FrameView& frame, std::span<const SeenPerso
   std::ranges::sort(sights_, {}, [](const Sight& s) { return std::pair(s.who->body.expected_trunk().z, s.who->id); });
 }
 
+void BodyTracker::look_elsewhere(const body::FrameView& frame) {
+  regions_.clear();
+  for (const Tracked& each : tracked_)
+    if (!each.matched && each.uncover == nullptr) regions_.push_back(each.body.expected_region(frame));
+  const bool begins = frame_ < kSearchEvery / 2;
+  if ((!begins && frame_ % kSearchEvery != kSearchEvery / 2) || tracked_.size() == kMostPeople) return;
+  constexpr int kStillThere = 3;  // frames
+  trunks_.clear();
+  for (const Tracked& each : tracked_)
+    if (each.body.missed() <= kStillThere) trunks_.push_back(each.body.expected_trunk());
+  if (const auto region = newcomers_.look(*detector_, frame, trunks_)) regions_.push_back(*region);
+}
+
 void BodyTracker::look_at_hands() {
   looks_.clear();
   const bool left = frame_ % 2 == 0;  // the other hand in the next frame
@@ -228,15 +255,13 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
   DUO_CHECK(finder_ != nullptr);
   const body::FrameView view{{frame.disparity.d_q4, &setup_.rectified}, frame.color, setup_.frame_s, setup_.body_model, {}};
   uncover(view);
-  regions_.clear();
-  for (const Tracked& each : tracked_)
-    if (!each.matched && each.uncover == nullptr) regions_.push_back(each.body.expected_region(view));
+  look_elsewhere(view);
   const std::span<const SeenPerson> seen = finder_->follow(frame.color, regions_);
   match(view, seen);
   for (std::size_t i = 0; i < seen.size() && tracked_.size() < kMostPeople; ++i) {
     if (owners_[i] != nullptr || is_of_another(view, seen, i)) continue;
-    if (auto started = Body::start(view, seen[i].body)) {
-      tracked_.push_back({next_id_++, std::move(*started), true, nullptr, false});
+    if (auto started = Body::start(view, seen[i].body); started && !newcomers_.was_refused(started->expected_trunk())) {
+      tracked_.push_back({next_id_++, std::move(*started), true, nullptr, false, 0});
       owners_[i] = &tracked_.back();
     }
   }
@@ -253,11 +278,22 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
   }
   for (Tracked& each : tracked_)
     if (std::ranges::none_of(sights_, [&](const Sight& sight) { return sight.who == &each; })) each.body.miss(each.covered);
-  constexpr int kForget = 75;  // frames
-  std::erase_if(tracked_, [](const Tracked& each) { return each.body.missed() > kForget; });
+  forget();
   publish(view);
   ++frame_;
   return people_;
+}
+
+void BodyTracker::forget() {
+  constexpr int kForget = 75, kConfirm = 10;  // frames
+  constexpr double kEnough = 1.0 / 3;
+  std::erase_if(tracked_, [&](Tracked& each) {
+    if (each.confirmed == kConfirm || each.covered) return each.body.missed() > kForget;
+    ++each.confirmed;
+    const bool mistake = each.body.seen_share() < kEnough;
+    if (mistake) newcomers_.refuse(each.body.expected_trunk());
+    return mistake;
+  });
 }
 
 void BodyTracker::publish(const body::FrameView& frame) {

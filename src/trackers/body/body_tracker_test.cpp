@@ -298,6 +298,29 @@ TEST(BodyTracker, OfAPersonHalfAMetreAwayOnlyWhatIsInThePictureIsSeen) {
   }
 }
 
+TEST(BodyTracker, WhoseHeadIsOutOfThePictureIsFoundByDepth) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  const SyntheticJoint* shoulder = nullptr;
+  for (const SyntheticJoint& joint : person.joints[0])
+    if (joint.id == JointId::kLeftShoulder) shoulder = &joint;
+  ASSERT_NE(shoulder, nullptr);
+  const Vec3 truth = person.rectified.rig_from_left * shoulder->p_in_left_m;
+  // The border runs through the neck.
+  constexpr int kBelow_px = 14;
+  const int up_px = static_cast<int>(person.rectified.project(truth).y) - kBelow_px;
+  const int last = person.rectified.size.height - 1;
+  for (int i = 0; i < 3; ++i) {
+    const Frame frame = composed(*person.frames[0], [&](int x, int y) { return FromPixel{x, std::min(y + up_px, last), 1}; });
+    const auto people = tracker->track(frame);
+    ASSERT_EQ(people.size(), 1u) << i;
+    const Joint& found = *people[0].find(JointId::kLeftShoulder);
+    EXPECT_EQ(found.state, JointState::kSeen) << i;
+    EXPECT_NEAR(found.p_in_rig_m.z, truth.z, 0.08) << i;
+    EXPECT_NEAR(person.rectified.project(found.p_in_rig_m).y, kBelow_px, 8) << i;
+  }
+}
+
 // Trunk, head, tail and four legs, brown and mottled, 1.5 m away before a wall.
 TEST(BodyTracker, ADogIsNoPerson) {
   const RenderedPerson& person = RenderedPerson::get();

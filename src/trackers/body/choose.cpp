@@ -47,11 +47,14 @@ void choose_line(const Scene& scene, JointId left, JointId right, Bone bone, Vec
   // Head on, depth tells how the line is turned; from the side the network does.
   const double turned = std::min(std::abs(across.z), 1.0);
   const double line_sigma = width * (0.35 - 0.17 * turned) + 0.3 * scene.depth.m_per_px(scene.trunk_z_m) * kDepthSigma_px;
+  const Vec3 shoulders = middle(out[JointId::kLeftShoulder].p, out[JointId::kRightShoulder].p);  // chosen before the hips
   double best = -1e9;
   for (const Candidate& a : sides[0].get())
     for (const Candidate& b : sides[1].get()) {
-      const double score =
+      double score =
           a.score + b.score + length_score(scene, bone, a.p, b.p) + capped(a.p.z - b.p.z - width * across.z, line_sigma, 8);
+      // What stands before the hips alone is no trunk.
+      if (bone == Bone::kHips) score += length_score(scene, Bone::kTrunk, shoulders, middle(a.p, b.p));
       if (score <= best) continue;
       best = score;
       out[left] = choice_of(scene, a);

@@ -88,6 +88,19 @@ TEST(BodyChoose, OfWhoSitsTheThighsHideTheHips) {
   }
 }
 
+TEST(BodyChoose, WhatStandsBeforeTheHipsAloneIsNoTrunk) {
+  // A plant 40 cm before the hips, which have been hidden for a while; their places are vague.
+  const Places places = standing();
+  Standing s(places);
+  for (const JointId id : {kLeftHip, kRightHip}) {
+    s.put(id, {{s.scene.surfaces[id].all[0].z_m - 0.4, 1}});
+    s.scene.expected[id] = {places[id], 0.3, 20};
+  }
+  Choices chosen;
+  choose(s.scene, chosen);
+  for (const JointId id : {kLeftHip, kRightHip}) EXPECT_FALSE(chosen[id].on_surface) << name_of(id);
+}
+
 TEST(BodyChoose, NoSurfaceCarriesTwoKnees) {
   // Legs crossed: both knees are marked at one place, and its surface is the left one's.
   Places places = standing();

@@ -43,6 +43,7 @@ struct DepthView {
 struct DepthRange {
   double near_m = 0, far_m = 0;
 };
+inline constexpr DepthRange kAnyDepth = {0.25, 15};
 
 /// The surfaces in the square of `half_m` around a place, at depth z; a gap of more than 2 cm, or of what disparity can tell,
 /// parts two. Those with less than 6 % of the window are left out.

@@ -1,6 +1,7 @@
 #include "trackers/body/uncover.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace duo::body {
 namespace {
@@ -19,8 +20,9 @@ Rgb8 between(Rgb8 a, Rgb8 b, int step, int steps) {
 
 }  // namespace
 
-void Uncover::begin(const FrameView& frame) {
+void Uncover::begin(const FrameView& frame, double trunk_z_m) {
   frame_ = frame;
+  trunk_z_m_ = trunk_z_m;
   copy(frame.picture, picture_);
   copy(frame.depth.d_q4, d_q4_);
   if (!(covered_.size() == d_q4_.size())) {
@@ -72,18 +74,27 @@ void Uncover::take_out_behind(const Window& box_px, double z_m) {
 }
 
 void Uncover::finish() {
+  constexpr double kThick_m = 0.3;
   const int width = taken_.width();
   for (int y = 0; y < taken_.height(); ++y) {
     const std::uint8_t *covered = covered_.row(y), *taken = taken_.row(y);
     Rgb8* colors = picture_.row(y);
     std::uint16_t* d_q4 = d_q4_.row(y);
+    const auto is_own = [&](int x) {
+      return x >= 0 && x < width && d_q4[x] != Disparity::kNone && d_q4[x] != 0 &&
+             std::abs(frame_.depth.z_m(d_q4[x]) - trunk_z_m_) < kThick_m;
+    };
     for (int x = 0; x < width; ++x) {
       if (taken[x] == 0) continue;
+      const bool own_left = is_own(x - 1);
       int end = x;
       for (; end < width && taken[end] != 0; ++end)
         if (covered[end] != 0) d_q4[end] = Disparity::kNone;
-      const Rgb8 right = end < width ? colors[end] : x > 0 ? colors[x - 1] : Rgb8{};
-      const Rgb8 left = x > 0 ? colors[x - 1] : right;
+      const bool own_right = is_own(end);
+      Rgb8 right = end < width ? colors[end] : x > 0 ? colors[x - 1] : Rgb8{};
+      Rgb8 left = x > 0 ? colors[x - 1] : right;
+      if (own_left && !own_right && end < width) left = right;
+      if (own_right && !own_left && x > 0) right = left;
       for (int i = x; i < end; ++i) colors[i] = between(left, right, i - x + 1, end - x + 1);
       x = end;
     }

@@ -19,7 +19,7 @@ TEST(Uncover, TakesOutWhatIsNearerInABox) {
   for (int y = 0; y < 240; ++y)
     for (int x = 0; x < 320; ++x) picture.at(y, x) = {static_cast<std::uint8_t>(x < 120 ? 10 : 110), 0, 7};
   Uncover uncover;
-  uncover.begin({map.view(), picture, 1.0 / 30, BodyModel::kLite, {}});
+  uncover.begin({map.view(), picture, 1.0 / 30, BodyModel::kLite, {}}, 4);
   uncover.take_out_before({80, 20, 90, 90}, 2);
   uncover.finish();
   const FrameView& view = uncover.view();
@@ -38,7 +38,7 @@ TEST(Uncover, TakesOutWhatIsNearerInABox) {
   EXPECT_EQ(view.picture.at(60, 119).b, 7);
   // The frame itself is as it was, and the next person begins with all of it.
   EXPECT_EQ(picture.at(60, 110).r, 10);
-  uncover.begin({map.view(), picture, 1.0 / 30, BodyModel::kLite, {}});
+  uncover.begin({map.view(), picture, 1.0 / 30, BodyModel::kLite, {}}, 4);
   uncover.finish();
   EXPECT_FALSE(uncover.view().is_covered({120, 60}));
   EXPECT_EQ(uncover.view().depth.d_q4.at(55, 110), map.d_q4.at(55, 110));
@@ -52,7 +52,7 @@ TEST(Uncover, AtThePicturesBorderItIsFilledFromOneSide) {
   for (int y = 0; y < 240; ++y)
     for (int x = 0; x < 320; ++x) picture.at(y, x) = {static_cast<std::uint8_t>(x / 2), 0, 0};
   Uncover uncover;
-  uncover.begin({map.view(), picture, 1.0 / 30, BodyModel::kLite, {}});
+  uncover.begin({map.view(), picture, 1.0 / 30, BodyModel::kLite, {}}, 4);
   uncover.take_out_before({-20, -20, 400, 400}, 2);
   uncover.finish();
   EXPECT_EQ(uncover.view().picture.at(100, 0).r, 28);
@@ -69,11 +69,13 @@ TEST(Uncover, WhoIsFartherAwayKeepsTheDepth) {
   for (int y = 0; y < 240; ++y)
     for (int x = 0; x < 320; ++x) picture.at(y, x) = {static_cast<std::uint8_t>(x >= 80 && x < 180 ? 200 : 50), 0, 0};
   Uncover uncover;
-  uncover.begin({map.view(), picture, 1.0 / 30, BodyModel::kLite, {}});
+  uncover.begin({map.view(), picture, 1.0 / 30, BodyModel::kLite, {}}, 1);
   uncover.take_out_behind({80, 20, 100, 100}, 2);
   uncover.finish();
   const FrameView& view = uncover.view();
   EXPECT_EQ(view.picture.at(60, 120).r, 200);  // somebody near
+  EXPECT_EQ(view.picture.at(60, 99).r, 50);    // whose outline stays: it is filled from the other side alone
+  EXPECT_EQ(view.picture.at(60, 140).r, 50);
   EXPECT_EQ(view.picture.at(110, 120).r, 50);  // what is behind, from both sides
   EXPECT_EQ(view.picture.at(110, 79).r, 50);
   EXPECT_FALSE(view.is_covered({120, 110}));

@@ -1,0 +1,125 @@
+// Who stands there, by depth alone, and what the network of bodies says of it.
+#include <gtest/gtest.h>
+
+#include "trackers/body/newcomers.h"
+#include "trackers/body/standing.h"
+
+namespace duo::body {
+namespace {
+
+using test::Map;
+
+// 2 m away 200 px are a metre. Cells of the map are 7 px.
+constexpr Window kPerson = {140, 21, 98, 210};
+
+Map room_with(const Window& what, double z_m) {
+  Map map;
+  map.fill({0, 0, 320, 240}, 4);
+  map.fill(what, z_m);
+  return map;
+}
+
+TEST(Upright, APersonSizedThingIsFoundWhereItStands) {
+  const Map map = room_with(kPerson, 2);
+  Uprights uprights;
+  const auto found = uprights.find(map.view());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].z_m, 2, 0.01);
+  EXPECT_EQ(found[0].box_px, kPerson);
+  EXPECT_FALSE(found[0].cut_above);
+  // The hips are 82 cm below the hair, and the region reaches 1.1 m to each side.
+  const TurnedSquare region = region_of(map.view(), found[0]);
+  EXPECT_EQ(region.x_q8, 256 * (140 + 49));
+  EXPECT_NEAR(region.y_q8 / 256.0, 21 + 0.82 * 200, 1);
+  EXPECT_NEAR(region.right_x_q8 / 256.0, 1.1 * 200, 1);
+}
+
+TEST(Upright, OfWhomTheUpperBorderCutsTheShouldersAreAtTheBorder) {
+  const Map map = room_with({140, 0, 98, 210}, 2);
+  Uprights uprights;
+  const auto found = uprights.find(map.view());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(found[0].cut_above);
+  EXPECT_NEAR(region_of(map.view(), found[0]).y_q8 / 256.0, 0.5 * 200, 1);
+}
+
+TEST(Upright, WallsSofasDogsAndFloorsAreNone) {
+  Uprights uprights;
+  EXPECT_TRUE(uprights.find(room_with({}, 0).view()).empty());                  // a wall alone
+  EXPECT_TRUE(uprights.find(room_with({20, 60, 280, 170}, 2).view()).empty());  // 1.4 m wide
+  EXPECT_TRUE(uprights.find(room_with({140, 140, 70, 70}, 2).view()).empty());  // 35 cm high
+  EXPECT_TRUE(uprights.find(room_with({140, 20, 21, 200}, 2).view()).empty());  // a pole
+  Map floor;
+  for (int y = 130; y < 240; ++y) floor.fill({100, y, 100, 1}, 400 * 1.2 / (y - 120.0));
+  EXPECT_TRUE(uprights.find(floor.view()).empty());
+}
+
+TEST(Upright, TheNearerOfTwoComesFirst) {
+  Map map = room_with(kPerson, 2.5);
+  map.fill({21, 28, 98, 212}, 1.5);  // whom the lower border cuts
+  Uprights uprights;
+  const auto found = uprights.find(map.view());
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NEAR(found[0].z_m, 1.5, 0.01);
+  EXPECT_NEAR(found[1].z_m, 2.5, 0.02);
+}
+
+/// Says of every region how sure it is that there is somebody, with a trunk in its middle, and counts.
+class OneAnswer final : public Detector {
+ public:
+  std::span<const FoundPerson> find(View<const Rgb8>, Window) override { return {}; }
+  void bodies(std::span<const Look> looks, std::span<SeenBody> out) override {
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      ++asked;
+      const TurnedSquare& region = looks[i].region;
+      out[i] = {};
+      out[i].score_q15 = score_q15;
+      out[i].next = region;
+      using enum BodyPoint;
+      for (const auto& [point, x, y] : {std::tuple{kLeftShoulder, 20, -80}, std::tuple{kRightShoulder, -20, -80},
+                                        std::tuple{kLeftHip, 15, 0}, std::tuple{kRightHip, -15, 0}}) {
+        out[i].points[static_cast<std::size_t>(point)].x_q8 = region.x_q8 + 256 * x;
+        out[i].points[static_cast<std::size_t>(point)].y_q8 = region.y_q8 + 256 * y;
+      }
+    }
+  }
+  void hands(std::span<const Look>, std::span<SeenHand>) override {}
+  bool sees_hands() const override { return false; }
+
+  std::uint16_t score_q15 = 32000;
+  int asked = 0;
+};
+
+TEST(Newcomers, WhoIsTrackedIsNotNew) {
+  const Map map = room_with(kPerson, 2);
+  const Image<Rgb8> picture({320, 240});
+  const FrameView frame{map.view(), picture, 1.0 / 30, BodyModel::kLite, {}};
+  OneAnswer detector;
+  Newcomers newcomers;
+  const std::array<Vec3, 1> here = {Vec3{0.1, 0.2, 2.1}}, elsewhere = {Vec3{1.2, 0.2, 2.1}};
+  EXPECT_FALSE(newcomers.look(detector, frame, here));
+  EXPECT_EQ(detector.asked, 0);
+  const auto found = newcomers.look(detector, frame, elsewhere);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->x_q8 / 256.0, 189, 1);
+}
+
+TEST(Newcomers, WhatIsNoPersonIsLeftAloneForSixCalls) {
+  const Map map = room_with(kPerson, 2);
+  const Image<Rgb8> picture({320, 240});
+  const FrameView frame{map.view(), picture, 1.0 / 30, BodyModel::kLite, {}};
+  OneAnswer detector;
+  detector.score_q15 = 3000;
+  Newcomers newcomers;
+  for (int call = 0; call < 6; ++call) EXPECT_FALSE(newcomers.look(detector, frame, {}));
+  EXPECT_EQ(detector.asked, 1);
+  newcomers.look(detector, frame, {});
+  EXPECT_EQ(detector.asked, 2);
+  detector.score_q15 = 18000;  // there may be somebody: looked at three times, and not surely
+  Newcomers others;
+  EXPECT_FALSE(others.look(detector, frame, {}));
+  EXPECT_EQ(detector.asked, 5);
+}
+
+}  // namespace
+}  // namespace duo::body
