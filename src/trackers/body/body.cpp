@@ -182,11 +182,7 @@ void Body::detect(const FrameView& frame, const SeenBody& seen, const Hands& han
   scene.trunk_z_m = trunk_z_m_;
   region_ = seen.next;
   region_from_px_ = centre_of(corners_of(seen));
-  if (const TrunkColor now = color_of(frame, corners_of(seen)); now.known) {
-    const double gain = color_.known ? 0.05 : 1;
-    color_ = {color_.red + gain * (now.red - color_.red), color_.green + gain * (now.green - color_.green),
-              color_.bright + gain * (now.bright - color_.bright), true};
-  }
+  color_.learn(color_of(frame, corners_of(seen)));
   const double px_per_m = frame.depth.px_per_m(trunk_z_m_);
   scene.points = points_of(seen, frame.model, frame.picture.size(), px_per_m, lengths_[Bone::kShoulders]);
   for (const JointId id : kFreeJoints)

@@ -42,6 +42,13 @@ TrunkColor color_of(const FrameView& frame, const TrunkCorners& corners) {
   return {red / sum, green / sum, sum / (3 * 255.0 * count), true};
 }
 
+void TrunkColor::learn(const TrunkColor& now) {
+  constexpr double kGain = 0.05;
+  if (!now.known) return;
+  const double gain = known ? kGain : 1;
+  *this = {red + gain * (now.red - red), green + gain * (now.green - green), bright + gain * (now.bright - bright), true};
+}
+
 double covered_share(const FrameView& frame, const TrunkCorners& corners) {
   constexpr int kSide = 9;
   int covered = 0;

@@ -19,6 +19,9 @@ Vec2 centre_of(const TrunkCorners& corners);
 struct TrunkColor {
   double red = 1.0 / 3, green = 1.0 / 3, bright = 0;
   bool known = false;
+
+  /// Follows what is seen now, slowly.
+  void learn(const TrunkColor& now);
 };
 
 /// Of what nobody covers; unknown where that is little.
