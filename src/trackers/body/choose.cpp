@@ -53,8 +53,8 @@ void choose_line(const Scene& scene, JointId left, JointId right, Bone bone, Vec
     for (const Candidate& b : sides[1].get()) {
       double score =
           a.score + b.score + length_score(scene, bone, a.p, b.p) + capped(a.p.z - b.p.z - width * across.z, line_sigma, 8);
-      // What stands before the hips alone is no trunk.
-      if (bone == Bone::kHips) score += length_score(scene, Bone::kTrunk, shoulders, middle(a.p, b.p));
+      // What stands before the hips alone is no trunk. It tells of both of them.
+      if (bone == Bone::kHips) score += 2 * length_score(scene, Bone::kTrunk, shoulders, middle(a.p, b.p));
       if (score <= best) continue;
       best = score;
       out[left] = choice_of(scene, a);

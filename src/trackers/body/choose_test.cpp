@@ -92,6 +92,7 @@ TEST(BodyChoose, WhatStandsBeforeTheHipsAloneIsNoTrunk) {
   // A plant 40 cm before the hips, which have been hidden for a while; their places are vague.
   const Places places = standing();
   Standing s(places);
+  for (int i = 0; i < 200; ++i) s.lengths.learn(Bone::kTrunk, 0.46, 1);
   for (const JointId id : {kLeftHip, kRightHip}) {
     s.put(id, {{s.scene.surfaces[id].all[0].z_m - 0.4, 1}});
     s.scene.expected[id] = {places[id], 0.3, 20};
