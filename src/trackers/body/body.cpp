@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "trackers/body/imagined.h"
+
 namespace duo::body {
 namespace {
 
@@ -14,35 +16,10 @@ double length(Vec2 a, Vec2 b) { return std::sqrt(square(a.x - b.x) + square(a.y 
 /// The parts of a person's depth that are possible around its trunk.
 DepthRange around(double trunk_z) { return {std::max(trunk_z - kReachBefore_m, kNear_m), trunk_z + kReachBehind_m}; }
 
-/// The body's joints as the network imagines them, put where the trunk is.
-Places imagined(const FrameView& frame, const SeenBody& seen, const Points& points, double trunk_z) {
-  using enum BodyPoint;
-  const auto depth_of = [&](BodyPoint point) { return seen.at(point).world_m().z; };
-  const double trunk = (depth_of(kLeftShoulder) + depth_of(kRightShoulder) + depth_of(kLeftHip) + depth_of(kRightHip)) / 4;
-  Places out;
-  const auto put = [&](JointId id, BodyPoint point) {
-    const double z = std::clamp(trunk_z + 0.1 + depth_of(point) - trunk, kNear_m, kFar_m);
-    out[id] = frame.depth.geometry->unproject(points[id].at_px, z);
-  };
-  put(JointId::kHead, kLeftEar);
-  put(JointId::kLeftShoulder, kLeftShoulder);
-  put(JointId::kRightShoulder, kRightShoulder);
-  put(JointId::kLeftElbow, kLeftElbow);
-  put(JointId::kRightElbow, kRightElbow);
-  put(JointId::kLeftWrist, kLeftWrist);
-  put(JointId::kRightWrist, kRightWrist);
-  put(JointId::kLeftHand, kLeftIndex);
-  put(JointId::kRightHand, kRightIndex);
-  put(JointId::kLeftHip, kLeftHip);
-  put(JointId::kRightHip, kRightHip);
-  put(JointId::kLeftKnee, kLeftKnee);
-  put(JointId::kRightKnee, kRightKnee);
-  put(JointId::kLeftAnkle, kLeftAnkle);
-  put(JointId::kRightAnkle, kRightAnkle);
-  put(JointId::kLeftFoot, kLeftFootIndex);
-  put(JointId::kRightFoot, kRightFootIndex);
-  complete(out);
-  return out;
+/// Whether a forearm points away from the cameras, so that it hides its own end.
+bool is_end_on(const Places& places, const Limb& arm, const Lengths& lengths) {
+  constexpr double kAway = 0.5;  // of its length: turned by more than 30 degrees
+  return places[arm[2]].z - places[arm[1]].z > kAway * lengths[Bone::kForearm];
 }
 
 /// A hand that its network found far from where the body's network has it is another one.
@@ -232,14 +209,17 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     const Vec3 p = fitted_.places[id];
     const Vec2 at = frame.depth.geometry->project(p);
     const Point& point = scene.points[id];
-    state.seen = chosen[id].on_surface && point.inside && std::abs(p.z - chosen[id].p.z) < kFar_off_m &&
+    const std::size_t side = is_left(id) ? 0 : 1;
+    const Limb& arm = kArmChains[side];
+    const bool hidden_by_arm =
+        (id == arm[2] || id == arm[3]) && scene.hands[side] != HandSight::kSeen && is_end_on(fitted_.places, arm, lengths_);
+    state.seen = !hidden_by_arm && chosen[id].on_surface && point.inside && std::abs(p.z - chosen[id].p.z) < kFar_off_m &&
                  length(at, point.at_px) < std::max(kFar_off_px * point.sigma_px, kTooFar_m * frame.depth.px_per_m(p.z));
     inside += point.inside;
     seen += state.seen;
     const bool was_hidden = state.hidden > 2;
     // After a gap one sight may be a mistake, and more of a hand that its network does not see.
-    const bool hand = id == JointId::kLeftHand || id == JointId::kRightHand;
-    const int enough = hand && scene.hands[is_left(id) ? 0 : 1] == HandSight::kAbsent ? kUnsureSights : kSights;
+    const int enough = id == arm[3] && scene.hands[side] == HandSight::kAbsent ? kUnsureSights : kSights;
     state.shown = state.seen ? state.shown + 1 : 0;
     state.sure = state.seen && (state.sure || state.shown >= enough || age_ == 1);
     state.hidden = state.seen ? 0 : state.hidden + 1;

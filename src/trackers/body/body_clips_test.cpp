@@ -156,7 +156,7 @@ TEST_P(BodyClips, WithoutAClick) {
 INSTANTIATE_TEST_SUITE_P(Rendered, BodyClips,
                          testing::Values(BodyLimits{"dev_easy_wave", 17, 22, 20, 48, 22, 0.5, 1},
                                          BodyLimits{"dev_hard_beige", 18, 28, 22, 42, 20, 1.5, 2},
-                                         BodyLimits{"dev_full_turn", 25, 36, 30, 30, 26, 4.5, 4}),
+                                         BodyLimits{"dev_full_turn", 25, 36, 30, 30, 26, 4.5, 2}),
                          [](const auto& info) { return std::string(info.param.clip); });
 
 }  // namespace
