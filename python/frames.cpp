@@ -324,8 +324,8 @@ void add_frames(py::module_& module) {
       "     skew_ms=0.0, layout=None, keep_rows=False) -> Frames\n\n"
       "Frames of two videos, pictures or cameras ('camera:0'), or of one recording. rig: a path or a Rig; a recording may "
       "bring\n"
-      "its own. tracker: 'body', 'arm' or 'thesis'. maps: of 'color', 'depth', 'disparity', 'views', 'confidence', those that\n"
-      "are wanted; without it all but confidence. near_m: how near things may be, m, in place of max_disparity, px.\n\n"
+      "its own. tracker: 'body', 'body_hands', 'arm' or 'thesis'. maps: of 'color', 'depth', 'disparity', 'views', 'confidence',\n"
+      "those that are wanted; without it all but confidence. near_m: how near things may be, m, in place of max_disparity, px.\n\n"
       "Errors: duoptic.Error with the line that the tool prints.");
   module.def("record", &record, py::arg("left"), py::arg("right"), py::arg("path"),
              "record(left, right, path, *, rig=None, seconds=0.0, replace=False, skew_ms=0.0, layout=None) -> int\n\n"

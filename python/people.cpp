@@ -83,7 +83,7 @@ void add_people(py::module_& module) {
       .def_readonly("id", &Person::id, "From 1; the same while the person is tracked")
       .def_property_readonly(
           "skeleton", [](const Person& p) { return p.skeleton == nullptr ? std::string_view() : p.skeleton->name; },
-          "'body', 'right_arm' or 'left_arm'")
+          "'body', 'body_hands', 'right_arm' or 'left_arm'")
       .def_property_readonly(
           "presence", [](const Person& p) { return text_of(p.presence); }, "'seen', 'hidden' (no joint was measured) or 'lost'")
       .def_readonly("confidence", &Person::confidence, "0 .. 1")
@@ -92,6 +92,17 @@ void add_people(py::module_& module) {
           "(x, y, width, height) around the joints that are not lost, raw left picture")
       .def_property_readonly("joints", joints_of, "dict of name to Joint, parents first")
       .def_property_readonly("places_m", places_of, "float64 (joints, 3), metres in the rig frame; NaN where lost")
+      .def(
+          "pinch_m",
+          [](const Person& p, const std::string& side) -> std::optional<std::pair<double, double>> {
+            if (side != "left" && side != "right") refuse("pinch_m: the side is neither 'left' nor 'right'");
+            const auto pinch = pinch_of(p, side == "left" ? Side::kLeft : Side::kRight);
+            if (!pinch) return std::nullopt;
+            return std::pair(pinch->distance_m, pinch->sigma_m);
+          },
+          py::arg("side"),
+          "(distance, one standard deviation) between the tips of thumb and index finger of the 'left' or 'right' hand, m;\n"
+          "None where a tip is lost or neither is seen")
       .def("__repr__", [](const Person& p) { return py::str("<duoptic.Person {} {}>").format(p.id, text_of(p.presence)); });
 }
 

@@ -17,9 +17,12 @@ constexpr char kFooter[] =
     "both cameras; scores are of the frames from there on.\n"
     "median, p95: error in mm where the joint is visible; bad: of these frames, lost or off by more than 100 mm; recover: the\n"
     "most frames from coming out after 5 or more hidden ones to being tracked again (> at the end still not); hidden, h.lost:\n"
-    "median error and share lost while hidden inside the picture; h.false: share called seen while hidden and off by more than\n"
-    "100 mm; 3 sigma: share of seen and inferred positions inside what the tracker claims. Of several people the joints are the\n"
-    "first one's; identity switches are counted over all. With --rig joints and depth are found with that rig and compared in its left\n"
+    "median error and share lost while hidden inside the picture; h.false: share called seen while hidden and off by more "
+    "than\n"
+    "100 mm; 3 sigma: share of seen and inferred positions inside what the tracker claims. Of several people the joints are "
+    "the\n"
+    "first one's; identity switches are counted over all. With --rig joints and depth are found with that rig and compared in "
+    "its left\n"
     "camera's axes with the truth, which is in the true left camera's: what a wrong rig does to distances counts as error.\n"
     "Depth is judged as disparity of that rig.\n\n"
     "Examples:\n"
@@ -129,6 +132,8 @@ Result<Exit> run(const Options& options) {
     TrackingOptions tracking = options.tracking.or_tracker("body");
     std::vector<std::string> trackers = {tracking.tracker};
     if (options.compare) trackers = tracker_names();
+    const std::string_view twin = options.tracking.hands ? "body" : "body_hands";  // finds the same people
+    std::erase(trackers, twin);
     for (const std::string& tracker : trackers) {
       tracking.tracker = tracker;
       DUO_TRY_ASSIGN(PipelineSetup setup, setup_of(tracking, folder, rig));

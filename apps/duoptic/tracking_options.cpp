@@ -18,12 +18,16 @@ void TrackingOptions::add_to(CLI::App& app) {
       ->check(within(1, Engine::kMaxDisparity));
   app.add_option(
          "--tracker", tracker,
-         "body: whole people, without clicks; arm: hand, elbow and shoulder that are clicked, also while they are hidden;\n"
-         "thesis: the method of 2010")
+         "body: whole people, without clicks; body_hands: the same with their fingers; arm: hand, elbow and shoulder that are\n"
+         "clicked, also while they are hidden; thesis: the method of 2010")
       ->check(CLI::IsMember(tracker_names()));
   app.add_option("--model", model, "The network of bodies of the tracker body: lite, full or heavy (see duoptic detect)")
       ->check(CLI::IsMember({"lite", "full", "heavy"}))
       ->capture_default_str();
+  app.add_flag(
+      "--hands", hands,
+      "Fingers, too: 20 joints more of each hand, and how far the tips of thumb and index finger are apart. Looks for\n"
+      "both hands in every frame, not in turn");
   app.add_flag("--focus", focus,
                "Match around people alone, and every 15th frame as a whole: a quarter to a half of the CPU time less, joints "
                "like those\n"
@@ -33,6 +37,12 @@ void TrackingOptions::add_to(CLI::App& app) {
 TrackingOptions TrackingOptions::or_tracker(const char* name) const {
   TrackingOptions out = *this;
   if (out.tracker.empty()) out.tracker = name;
+  if (hands && out.tracker == "body") out.tracker = "body_hands";
+  if (hands && out.tracker != "body_hands")
+    throw CLI::ValidationError("--hands",
+                               fmt::format("the tracker {} has no fingers; leave out --hands, or take the tracker body "
+                                           "without --select",
+                                           out.tracker));
   return out;
 }
 

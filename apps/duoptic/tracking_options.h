@@ -18,11 +18,13 @@ struct TrackingOptions {
   std::string model = "full";  // of a tracker with networks
   int max_disparity = 0;       // 0: what something at kNearest_m has
   bool focus = false;
+  bool hands = false;     // fingers, too: the tracker body_hands for body
   bool all_maps = false;  // frames are drawn or scored, not only tracked
   bool in_bulk = false;   // of files: as many frames per second as can be, rather than each soon
 
   void add_to(CLI::App& app);
-  /// With a tracker where none was chosen.
+  /// With a tracker where none was chosen, and its fingers where they are wanted. Throws CLI::ValidationError where the
+  /// tracker has none.
   TrackingOptions or_tracker(const char* name) const;
   /// Errors  those of disparities_from()
   Result<PipelineSetup> setup(const Input& input) const;

@@ -178,7 +178,9 @@ void Panels::draw_people(const Fit& fit) const {
   const Shapes shapes = shapes_of(shown_->people, header_);
   for (const Shapes::Line& bone : shapes.bones) {
     const ImVec2 from = fit.place(bone.x0_px, bone.y0_px), to = fit.place(bone.x1_px, bone.y1_px);
-    if (bone.broken)
+    if (bone.thin)
+      list.AddLine(from, to, bone.broken ? kFaint : kAccent, thick / 2);
+    else if (bone.broken)
       dashed_line(list, from, to, kBone, thick, dash);
     else
       list.AddLine(from, to, kBone, thick);
@@ -272,10 +274,13 @@ Result<void> Panels::draw_cloud_panel(const Cell& cell) {
     for (std::size_t j = 0; j < places.size(); ++j) {
       const int parent = person.skeleton->joints[j].parent;
       const auto from = parent < 0 ? std::nullopt : places[static_cast<std::size_t>(parent)];
-      if (from && places[j]) list.AddLine(*from, *places[j], kBone, 3.5f * scale_);
+      const float thick = is_finger(person.skeleton->joints[j].id) ? 1.5f : 3.5f;
+      if (from && places[j]) list.AddLine(*from, *places[j], kBone, thick * scale_);
     }
     for (std::size_t j = 0; j < places.size(); ++j)
-      if (places[j]) list.AddCircleFilled(*places[j], 5 * scale_, color_of(person.joints[j].state));
+      if (places[j])
+        list.AddCircleFilled(*places[j], (is_finger(person.skeleton->joints[j].id) ? 2 : 5) * scale_,
+                             color_of(person.joints[j].state));
   }
   list.PopClipRect();
   return {};

@@ -40,7 +40,7 @@ void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range
 Rgb8 shade_of(JointId joint);
 
 /// The rectified picture, dark and gray, with the persons' pixels in the shade of the joint they are nearest to. A person is
-/// what lies within the joints' radius of the bones between joints that are not lost.
+/// what lies within the joints' radius of the bones between joints that are not lost; of the trunk's within 1.4 times as much.
 ///
 /// Shape  dst like the frame's maps; of these it needs disparity and colour
 void draw_regions(const Frame& frame, const Rectified& rectified, std::span<const Person> people, View<Rgb8> dst);
@@ -91,10 +91,12 @@ void draw_points(View<const std::uint16_t> d_q4, View<const Rgb8> color, const R
 void draw_people(std::span<const SeenPerson> people, View<Rgb8> picture);
 
 /// Persons as shapes over the raw left picture, in its pixels; broken where a joint is inferred, left out where it is lost.
+/// Fingers have bones alone, and take the place of the box around their palm.
 struct Shapes {
   struct Line {
     double x0_px = 0, y0_px = 0, x1_px = 0, y1_px = 0;
     bool broken = false;
+    bool thin = false;  // a finger's
   };
   struct Mark {
     double x_px = 0, y_px = 0, half_px = 0, sigma_px = 0;  // a box around a joint, as wide as a hand, and a ring of one sigma
@@ -111,7 +113,7 @@ struct Label {
   std::string sigma;  // "2 cm"; empty when lost
   JointState state = JointState::kLost;
 };
-/// The ends of limbs come first.
+/// The ends of limbs come first; of a person with fingers the pinches that are known come last.
 std::vector<Label> labels_of(const Person& person, bool metric = true);
 
 /// The joints that captions explain the shades of: each part of the body once, of whichever side.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <type_traits>
 
 #include "duoptic/geometry.h"
@@ -79,5 +80,14 @@ struct Person {
   void sum_up();
 };
 static_assert(std::is_trivially_copyable_v<Person>);
+
+/// How far the tips of a hand's thumb and index finger are apart.
+///
+/// Units  metres; sigma_m: one standard deviation along the line between them, the errors of both taken as independent
+struct Pinch {
+  double distance_m = 0, sigma_m = 0;
+};
+/// None where a tip is lost, where neither is seen, and where the skeleton has no fingers. `side`: left or right.
+std::optional<Pinch> pinch_of(const Person& person, Side side);
 
 }  // namespace duo

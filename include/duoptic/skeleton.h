@@ -35,8 +35,53 @@ enum class JointId : std::uint8_t {
   kRightKnee,
   kRightAnkle,
   kRightFoot,
+  // Fingers, from their roots to their tips.
+  kLeftThumbCmc,
+  kLeftThumbMcp,
+  kLeftThumbIp,
+  kLeftThumbTip,
+  kLeftIndexMcp,
+  kLeftIndexPip,
+  kLeftIndexDip,
+  kLeftIndexTip,
+  kLeftMiddleMcp,
+  kLeftMiddlePip,
+  kLeftMiddleDip,
+  kLeftMiddleTip,
+  kLeftRingMcp,
+  kLeftRingPip,
+  kLeftRingDip,
+  kLeftRingTip,
+  kLeftPinkyMcp,
+  kLeftPinkyPip,
+  kLeftPinkyDip,
+  kLeftPinkyTip,
+  kRightThumbCmc,
+  kRightThumbMcp,
+  kRightThumbIp,
+  kRightThumbTip,
+  kRightIndexMcp,
+  kRightIndexPip,
+  kRightIndexDip,
+  kRightIndexTip,
+  kRightMiddleMcp,
+  kRightMiddlePip,
+  kRightMiddleDip,
+  kRightMiddleTip,
+  kRightRingMcp,
+  kRightRingPip,
+  kRightRingDip,
+  kRightRingTip,
+  kRightPinkyMcp,
+  kRightPinkyPip,
+  kRightPinkyDip,
+  kRightPinkyTip,
 };
-inline constexpr std::size_t kJointIds = 21;
+inline constexpr std::size_t kBodyJointIds = 21;  // those before the fingers
+inline constexpr std::size_t kFingerJoints = 20;  // of one hand: five fingers of four joints, the thumb first
+inline constexpr std::size_t kJointIds = kBodyJointIds + 2 * kFingerJoints;
+
+constexpr bool is_finger(JointId id) { return static_cast<std::size_t>(id) >= kBodyJointIds; }
 
 /// One joint of a skeleton.
 struct JointDef {
@@ -49,7 +94,7 @@ struct JointDef {
 
 /// Joints, parents first.
 struct Skeleton {
-  static constexpr std::size_t kMostJoints = 32;
+  static constexpr std::size_t kMostJoints = 64;
   std::string_view name;
   std::span<const JointDef> joints;
 
@@ -57,9 +102,15 @@ struct Skeleton {
   std::optional<std::size_t> index_of(JointId id) const;
 };
 
-extern const Skeleton kBody;      // "body": every joint
-extern const Skeleton kRightArm;  // "right_arm": right_shoulder, right_elbow, right_hand
-extern const Skeleton kLeftArm;   // "left_arm"
+extern const Skeleton kBody;       // "body": every joint but those of fingers
+extern const Skeleton kBodyHands;  // "body_hands": every joint; the body's come first, as in "body"
+extern const Skeleton kRightArm;   // "right_arm": right_shoulder, right_elbow, right_hand
+extern const Skeleton kLeftArm;    // "left_arm"
+
+/// A joint of a hand's fingers, 0 .. 19; `side`: left or right.
+constexpr JointId finger_joint(Side side, std::size_t joint) {
+  return static_cast<JointId>(kBodyJointIds + (side == Side::kRight ? kFingerJoints : 0) + joint);
+}
 
 /// The skeleton of that name; null when there is none.
 const Skeleton* skeleton_named(std::string_view name);

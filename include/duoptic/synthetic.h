@@ -75,7 +75,7 @@ struct SyntheticClipFrame {
   double t_s = 0;
   double ceiling_light = 1;                         // power of the lamp
   std::string act;                                  // what the person does
-  std::vector<SyntheticJoint> joints;               // 19: of kBody without spine and chest
+  std::vector<SyntheticJoint> joints;               // 49: of kBodyHands without spine, chest and a joint of each finger
   std::vector<std::vector<SyntheticJoint>> others;  // of other people, where the script has some
   Image<float> depth_left_m;                        // as in SyntheticPair
   Image<std::uint8_t> figure_left;                  // 255 where that is a person
@@ -114,8 +114,9 @@ class SyntheticClip {
 };
 
 /// Of a person that stands before the rig and moves an arm: wave, reach, sweep, behind, out, light, and tour, which is all of
-/// these one after the other. Of whole bodies, of other sizes and clothes, farther away: turn once around; walk across and
-/// back; sit down and cross the legs; cross, in which a second person comes the other way.
+/// these one after the other; pinch, in which thumb and index finger meet. Of whole bodies, of other sizes and clothes, farther
+/// away: turn once around; walk across and back; sit down and cross the legs; cross, in which a second person comes the other
+/// way.
 std::vector<std::string> synthetic_scripts();
 
 /// Renders a clip into a new folder: left.avi and right.avi (MJPEG), calibration_truth.yml, truth.json, and every tenth frame

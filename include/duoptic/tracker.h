@@ -75,8 +75,8 @@ class Tracker {
   virtual std::span<const StageTime> stages() const { return {}; }
 };
 
-/// Makes a tracker by name: "body" (whole people, found by themselves), "arm" (hand, elbow and shoulder of one or two arms that
-/// are clicked, through hiding), "thesis" (the method of 2010).
+/// Makes a tracker by name: "body" (whole people, found by themselves), "body_hands" (the same with their fingers), "arm"
+/// (hand, elbow and shoulder of one or two arms that are clicked, through hiding), "thesis" (the method of 2010).
 ///
 /// Errors  unknown name, with the known ones
 Result<std::unique_ptr<Tracker>> make_tracker(std::string_view name);

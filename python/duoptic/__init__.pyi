@@ -77,7 +77,7 @@ class Person:
     @property
     def id(self) -> int: ...
     @property
-    def skeleton(self) -> Literal["body", "right_arm", "left_arm"]: ...
+    def skeleton(self) -> Literal["body", "body_hands", "right_arm", "left_arm"]: ...
     @property
     def presence(self) -> Literal["seen", "hidden", "lost"]: ...
     @property
@@ -88,6 +88,7 @@ class Person:
     def joints(self) -> dict[str, Joint]: ...
     @property
     def places_m(self) -> _F64: ...
+    def pinch_m(self, side: Literal["left", "right"]) -> tuple[float, float] | None: ...
 
 class Frame:
     @property
@@ -176,7 +177,7 @@ class _EngineOptions(TypedDict, total=False):
     maps: Sequence[_Map] | None
 
 class _OpenOptions(_SourceOptions, _EngineOptions, total=False):
-    tracker: Literal["body", "arm", "thesis"] | None
+    tracker: Literal["body", "body_hands", "arm", "thesis"] | None
     model: Literal["lite", "full", "heavy"]
     first: int
     every: int

@@ -1,4 +1,5 @@
 """Frames in Python are those of the tool, bit for bit, and stay what they are."""
+import itertools
 import json
 import struct
 import tempfile
@@ -80,6 +81,23 @@ class Frames(unittest.TestCase):
                         np.testing.assert_allclose(told["p_in_rig_m"], joint.p_m, atol=0.500001e-4, rtol=0)
                         seen += 1
         self.assertGreater(seen, 100)
+
+    def test_fingers_and_pinches(self):
+        for frame in itertools.islice(duoptic.open(CLIP, tracker="body_hands"), 3):
+            for person in frame.people:
+                self.assertEqual((person.skeleton, len(person.joints)), ("body_hands", 61))
+                for side in ("left", "right"):
+                    tips = [person.joints[f"{side}_{finger}_tip"] for finger in ("thumb", "index")]
+                    pinch = person.pinch_m(side)
+                    states = {tip.state for tip in tips}
+                    if "lost" in states or "seen" not in states:
+                        self.assertIsNone(pinch)
+                        continue
+                    distance, sigma = pinch
+                    self.assertAlmostEqual(distance, np.linalg.norm(np.subtract(tips[0].p_m, tips[1].p_m)))
+                    self.assertGreater(sigma, 0)
+                with self.assertRaisesRegex(duoptic.Error, "neither 'left' nor 'right'"):
+                    person.pinch_m("middle")
 
     def test_an_arm_that_is_clicked_is_the_tools(self):
         truth = json.loads((CLIP.parent / "clip" / "truth.json").read_text())["frames"][0]["joints"]

@@ -7,18 +7,21 @@ namespace duo {
 namespace {
 
 TEST(Skeleton, FindsJointsAndSkeletonsByName) {
-  for (const JointDef& joint : kBody.joints) {
+  for (const JointDef& joint : kBodyHands.joints) {
     EXPECT_EQ(joint_named(joint.name), joint.id);
     EXPECT_EQ(name_of(joint.id), joint.name);
   }
   EXPECT_FALSE(joint_named("hand"));
   EXPECT_EQ(skeleton_named("left_arm"), &kLeftArm);
   EXPECT_EQ(skeleton_named("arm"), nullptr);
-  EXPECT_EQ(kBody.joints.size(), kJointIds);
+  EXPECT_EQ(kBody.joints.size(), kBodyJointIds);
+  EXPECT_EQ(kBodyHands.joints.size(), kJointIds);
+  EXPECT_EQ(finger_joint(Side::kRight, 7), JointId::kRightIndexTip);
+  EXPECT_EQ(finger_joint(Side::kLeft, 19), JointId::kLeftPinkyTip);
 }
 
 TEST(Skeleton, SidesAndParentsAgreeWithNames) {
-  for (const Skeleton* skeleton : {&kBody, &kRightArm, &kLeftArm})
+  for (const Skeleton* skeleton : {&kBody, &kBodyHands, &kRightArm, &kLeftArm})
     for (std::size_t j = 0; j < skeleton->joints.size(); ++j) {
       const JointDef& joint = skeleton->joints[j];
       const Side side = joint.name.starts_with("left_")    ? Side::kLeft
@@ -59,12 +62,34 @@ TEST(Person, SumsUpItsJoints) {
   EXPECT_TRUE(person.box_px.empty());
 }
 
+/// By hand: tips 3 cm apart along x and 4 cm along z, with 2 and 1 mm of doubt along x, 0 and 5 mm along z: along the line
+/// between them sqrt(0.6^2 (4 + 1) + 0.8^2 25) = sqrt(17.8) mm.
+TEST(Person, PinchByHand) {
+  Person person;
+  person.skeleton = &kBodyHands;
+  const auto at = [&](JointId id) -> Joint& { return person.joints[static_cast<std::size_t>(id)]; };
+  EXPECT_FALSE(pinch_of(person, Side::kRight)) << "both are lost";
+  at(JointId::kRightThumbTip) = {.p_in_rig_m = {0.1, 0, 1}, .cov_m2 = {.xx = 4e-6}, .state = JointState::kSeen};
+  EXPECT_FALSE(pinch_of(person, Side::kRight));
+  at(JointId::kRightIndexTip) = {
+      .p_in_rig_m = {0.13, 0, 1.04}, .cov_m2 = {.xx = 1e-6, .zz = 25e-6}, .state = JointState::kInferred};
+  const auto pinch = pinch_of(person, Side::kRight);
+  ASSERT_TRUE(pinch);
+  EXPECT_NEAR(pinch->distance_m, 0.05, 1e-12);
+  EXPECT_NEAR(pinch->sigma_m, std::sqrt(17.8e-6), 1e-12);
+  EXPECT_FALSE(pinch_of(person, Side::kLeft));
+  at(JointId::kRightThumbTip).state = JointState::kInferred;
+  EXPECT_FALSE(pinch_of(person, Side::kRight)) << "neither is seen";
+  person.skeleton = &kBody;
+  EXPECT_FALSE(pinch_of(person, Side::kRight));
+}
+
 /// Places of a body in its T-pose, each bone 0.2 long.
-std::vector<Vec3> t_pose() {
-  std::vector<Vec3> out(kBody.joints.size());
+std::vector<Vec3> t_pose(const Skeleton& skeleton = kBody) {
+  std::vector<Vec3> out(skeleton.joints.size());
   for (std::size_t j = 1; j < out.size(); ++j)
-    out[j] = out[static_cast<std::size_t>(kBody.joints[j].parent)] +
-             0.2 * rest_direction(kBody.joints[j].id, BodyAxes::kRightHanded);
+    out[j] = out[static_cast<std::size_t>(skeleton.joints[j].parent)] +
+             0.2 * rest_direction(skeleton.joints[j].id, BodyAxes::kRightHanded);
   return out;
 }
 
@@ -101,10 +126,47 @@ TEST(KnownPlaces, LostLimbsHangFromTheTrunk) {
   EXPECT_FALSE(known_places(person, Mat3()));
 }
 
+/// By hand: lost fingers of a hand that hangs go on downwards, the thumb to the front; the index finger's root lies 92 mm below
+/// the wrist and 25 mm before it, its tip 87 mm below that.
+TEST(KnownPlaces, LostFingersGoOnWithTheHand) {
+  Person person;
+  person.skeleton = &kBodyHands;
+  for (std::size_t j = 0; j < kBodyJointIds; ++j) person.joints[j].state = JointState::kSeen;
+  const auto at = [&](JointId id) -> Joint& { return person.joints[static_cast<std::size_t>(id)]; };
+  at(JointId::kChest).p_in_rig_m = {0, -0.5, 2};
+  at(JointId::kPelvis).p_in_rig_m = {0, 0, 2};
+  at(JointId::kLeftShoulder).p_in_rig_m = {0.2, -0.5, 2};
+  at(JointId::kRightShoulder).p_in_rig_m = {-0.2, -0.5, 2};
+  at(JointId::kLeftWrist).p_in_rig_m = {0.3, 0, 2};
+  at(JointId::kLeftHand).p_in_rig_m = {0.3, 0.07, 2};
+  const auto places = known_places(person, Mat3());
+  ASSERT_TRUE(places);
+  const auto expect = [&](JointId id, Vec3 want) {
+    EXPECT_NEAR(norm((*places)[static_cast<std::size_t>(id)] - want), 0, 1e-12) << name_of(id);
+  };
+  expect(JointId::kLeftIndexMcp, {0.3, 0.092, 1.975});
+  expect(JointId::kLeftIndexTip, {0.3, 0.179, 1.975});
+}
+
 TEST(BoneTurns, NoneInTheTPose) {
-  const auto turns = BoneTurner(kBody, BodyAxes::kRightHanded).turn(t_pose());
+  for (const Skeleton* skeleton : {&kBody, &kBodyHands}) {
+    const auto turns = BoneTurner(*skeleton, BodyAxes::kRightHanded).turn(t_pose(*skeleton));
+    ASSERT_TRUE(turns);
+    for (std::size_t j = 0; j < turns->size(); ++j) expect_turn((*turns)[j], Mat3{}, std::string(skeleton->joints[j].name));
+  }
+}
+
+/// By hand: the left index finger's middle bone points down where the palm looks: a quarter turn around z, and nothing else.
+TEST(BoneTurns, AFingerBendsToThePalm) {
+  std::vector<Vec3> places = t_pose(kBodyHands);
+  const auto at = [](JointId id) { return static_cast<std::size_t>(id); };
+  places[at(JointId::kLeftIndexDip)] = places[at(JointId::kLeftIndexPip)] + Vec3{0, -0.2, 0};
+  places[at(JointId::kLeftIndexTip)] = places[at(JointId::kLeftIndexDip)] + Vec3{0, -0.2, 0};
+  const auto turns = BoneTurner(kBodyHands, BodyAxes::kRightHanded).turn(places);
   ASSERT_TRUE(turns);
-  for (std::size_t j = 0; j < turns->size(); ++j) expect_turn((*turns)[j], Mat3{}, std::string(kBody.joints[j].name));
+  expect_turn((*turns)[at(JointId::kLeftIndexMcp)], Mat3{}, "root");
+  expect_turn((*turns)[at(JointId::kLeftIndexPip)], Mat3{{0, 1, 0, -1, 0, 0, 0, 0, 1}}, "middle");
+  expect_turn((*turns)[at(JointId::kLeftIndexDip)], Mat3{}, "end");
 }
 
 /// By hand: a shin that points to the back has turned a quarter around x, and its foot, which went with it, has not.

@@ -38,12 +38,45 @@ Mat3 best_fit(std::span<const Vec3> rest, std::span<const Vec3> found) {
   return out;
 }
 
+Side side_of(JointId joint) { return kBodyHands.joints[static_cast<std::size_t>(joint)].side; }
+
+/// A finger of an adult's flat hand: its root from the wrist, along the hand and towards the thumb's side, and its bones.
+///
+/// Units  metres
+struct FlatFinger {
+  double along_m, aside_m;
+  std::array<double, 3> bones_m;
+};
+constexpr std::array<FlatFinger, 5> kFlatHand = {{{0.025, 0.03, {0.045, 0.034, 0.028}},
+                                                  {0.092, 0.025, {0.042, 0.025, 0.02}},
+                                                  {0.09, 0.005, {0.046, 0.028, 0.021}},
+                                                  {0.085, -0.013, {0.042, 0.027, 0.021}},
+                                                  {0.078, -0.03, {0.033, 0.02, 0.018}}}};
+
+/// Which finger, the thumb first, and which of its joints from the root on.
+struct FingerJoint {
+  std::size_t finger, joint;
+};
+FingerJoint finger_of(JointId id) {
+  constexpr std::size_t kPerFinger = kFingerJoints / kFlatHand.size();
+  const std::size_t at = (static_cast<std::size_t>(id) - kBodyJointIds) % kFingerJoints;
+  return {at / kPerFinger, at % kPerFinger};
+}
+
+/// The bone that ends in a finger's joint, of a flat hand. The thumb stands half aside.
+Vec3 flat_bone(JointId id, Vec3 along, Vec3 aside) {
+  const auto [finger, joint] = finger_of(id);
+  const FlatFinger& flat = kFlatHand[finger];
+  if (joint == 0) return flat.along_m * along + flat.aside_m * aside;
+  return flat.bones_m[joint - 1] * (finger == 0 ? normalized(along + aside) : along);
+}
+
 /// From its parent to a joint of an adult who stands: arms and legs hang down.
 ///
 /// Units  metres
 Vec3 hanging(JointId joint, Vec3 up, Vec3 left) {
   using enum JointId;
-  const Vec3 side = kBody.joints[static_cast<std::size_t>(joint)].side == Side::kLeft ? left : -1.0 * left;
+  const Vec3 side = side_of(joint) == Side::kLeft ? left : -1.0 * left;
   switch (joint) {
     case kHead:
       return 0.18 * up;
@@ -76,8 +109,8 @@ Vec3 hanging(JointId joint, Vec3 up, Vec3 left) {
 
 // Who looks along z with y up has the left hand at +x when the axes are right-handed, at -x when they are left-handed.
 Vec3 rest_direction(JointId joint, BodyAxes axes) {
-  const Side side = kBody.joints[static_cast<std::size_t>(joint)].side;
-  const double out = (side == Side::kLeft) == (axes == BodyAxes::kRightHanded) ? 1 : -1;
+  const double out = (side_of(joint) == Side::kLeft) == (axes == BodyAxes::kRightHanded) ? 1 : -1;
+  if (is_finger(joint)) return normalized(flat_bone(joint, {out, 0, 0}, {0, 0, 1}));
   switch (joint) {
     case JointId::kPelvis:
     case JointId::kSpine:
@@ -117,8 +150,19 @@ std::optional<std::vector<Vec3>> known_places(const Person& person, const Mat3& 
     const Vec3 left = person.find(kLeftShoulder)->p_in_rig_m - person.find(kRightShoulder)->p_in_rig_m;
     if (!(norm(up) > 0) || !(norm(cross(left, up)) > 0)) return std::nullopt;
     const JointDef& def = person.skeleton->joints[j];
-    const Vec3 way = hanging(def.id, normalized(up), normalized(left));
-    out.push_back(out[static_cast<std::size_t>(def.parent)] + axes_from_rig * way);
+    const Vec3 from = out[static_cast<std::size_t>(def.parent)];
+    if (!is_finger(def.id)) {
+      out.push_back(from + axes_from_rig * hanging(def.id, normalized(up), normalized(left)));
+      continue;
+    }
+    // The hand goes on where it points, its thumb to the front.
+    const bool is_left = def.side == Side::kLeft;
+    const auto at = [&](JointId id) { return out[*person.skeleton->index_of(id)]; };
+    const Vec3 hand = at(is_left ? kLeftHand : kRightHand) - at(is_left ? kLeftWrist : kRightWrist);
+    const Vec3 y = axes_from_rig * normalized(up), z = axes_from_rig * normalized(cross(left, up));
+    const Vec3 along = norm(hand) > 0 ? normalized(hand) : -1.0 * y;
+    const auto aside = across(z, along);
+    out.push_back(from + flat_bone(def.id, along, aside ? *aside : *across(y, along)));
   }
   return out;
 }
@@ -133,10 +177,18 @@ BoneTurner::BoneTurner(const Skeleton& skeleton, BodyAxes axes) : nodes_(skeleto
     Node& node = nodes_[j];
     if (node.children.size() != 1) continue;
     const Vec3 bone = nodes_[node.children[0]].rest;
-    // An elbow bends the forearm to the front, around y; a knee bends the shin to the back, around x.
+    // An elbow bends the forearm to the front, around y; a knee bends the shin to the back, around x; a finger bends down,
+    // where the palm looks, and a thumb beside its root to the fingers.
     const bool arm = bone.x != 0;
-    node.hinge_at_rest = node.hinge = arm ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
-    node.bend_sign = dot(cross(bone, Vec3{0, 0, arm ? 1.0 : -1.0}), node.hinge_at_rest);
+    node.hinge_at_rest = arm ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
+    Vec3 bend = {0, 0, arm ? 1.0 : -1.0};
+    if (const JointId id = skeleton.joints[j].id; is_finger(id)) {
+      const bool thumb = finger_of(id).finger == 0;
+      bend = thumb ? Vec3{bone.x, 0, -bone.z} : Vec3{0, -1, 0};
+      node.hinge_at_rest = thumb ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+    }
+    node.hinge = node.hinge_at_rest;
+    node.bend_sign = dot(cross(bone, bend), node.hinge_at_rest);
     const bool limb = skeleton.joints[j].side != Side::kMiddle;
     const bool first =
         skeleton.joints[j].parent < 0 || nodes_[static_cast<std::size_t>(skeleton.joints[j].parent)].children.size() > 1;

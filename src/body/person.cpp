@@ -34,4 +34,20 @@ void Person::sum_up() {
   box_px = {pixel(x0), pixel(y0), pixel(x1) - pixel(x0) + 1, pixel(y1) - pixel(y0) + 1};
 }
 
+std::optional<Pinch> pinch_of(const Person& person, Side side) {
+  const bool left = side == Side::kLeft;
+  const Joint* thumb = person.find(left ? JointId::kLeftThumbTip : JointId::kRightThumbTip);
+  const Joint* index = person.find(left ? JointId::kLeftIndexTip : JointId::kRightIndexTip);
+  if (thumb == nullptr || index == nullptr || thumb->state == JointState::kLost || index->state == JointState::kLost) return {};
+  if (thumb->state != JointState::kSeen && index->state != JointState::kSeen) return {};
+  const Vec3 way = index->p_in_rig_m - thumb->p_in_rig_m;
+  const double distance = norm(way);
+  const Vec3 u = distance > 0 ? (1 / distance) * way : Vec3{1, 0, 0};
+  const auto along = [u](const Covariance3& c) {
+    return u.x * u.x * c.xx + u.y * u.y * c.yy + u.z * u.z * c.zz +
+           2 * (u.x * u.y * c.xy + u.x * u.z * c.xz + u.y * u.z * c.yz);
+  };
+  return Pinch{distance, std::sqrt(std::max(along(thumb->cov_m2) + along(index->cov_m2), 0.0))};
+}
+
 }  // namespace duo

@@ -14,8 +14,9 @@
 namespace duo {
 namespace {
 
-const cv::Scalar kText(228, 228, 228), kFaint(140, 140, 140), kBox(60, 230, 80), kBone(235, 45, 40);
+const cv::Scalar kText(228, 228, 228), kFaint(140, 140, 140), kBox(60, 230, 80), kBone(235, 45, 40), kFinger(255, 205, 60);
 constexpr Rgb8 kGround = {18, 20, 24};
+constexpr int kFace = cv::FONT_HERSHEY_SIMPLEX;
 
 /// Four cells: a title, a picture as wide as the raw one but at most kMaxWidth, and a caption.
 struct Layout {
@@ -58,7 +59,6 @@ enum class Align { kLeft, kRight };
 
 void put_text(View<Rgb8> dst, const std::string& text, cv::Point at, const cv::Scalar& color, const Layout& layout,
               Align align = Align::kLeft) {
-  constexpr int kFace = cv::FONT_HERSHEY_SIMPLEX;
   if (align == Align::kRight) at.x -= cv::getTextSize(text, kFace, layout.font(), layout.stroke(), nullptr).width;
   cv::putText(mat_of(dst), text, at, kFace, layout.font(), color, layout.stroke(), cv::LINE_AA);
 }
@@ -99,6 +99,7 @@ void stroke(const Shapes& shapes, View<Rgb8> dst, const TrackHeader& header, con
     return cv::Point2d((x_px + 0.5) * scale - 0.5, (y_px + 0.5) * scale - 0.5);
   };
   for (const Shapes::Line& bone : shapes.bones) {
+    if (bone.thin) continue;
     const cv::Point2d a = place(bone.x0_px, bone.y0_px), b = place(bone.x1_px, bone.y1_px);
     if (bone.broken)
       broken_line(rgb, a, b, kBone, thick, dash_px);
@@ -116,6 +117,10 @@ void stroke(const Shapes& shapes, View<Rgb8> dst, const TrackHeader& header, con
     cv::rectangle(rgb, corners[0], corners[2], kBox, thick - 1, cv::LINE_AA);
     cv::circle(rgb, c, thick, kBox, cv::FILLED, cv::LINE_AA);
   }
+  for (const Shapes::Line& bone : shapes.bones)  // over the boxes of hands
+    if (bone.thin)
+      cv::line(rgb, place(bone.x0_px, bone.y0_px), place(bone.x1_px, bone.y1_px), bone.broken ? kFaint : kFinger,
+               std::max(thick / 2, 1), cv::LINE_AA);
 }
 
 /// "hand 1.32 m +-2 cm" for each joint; a line per person.
@@ -124,12 +129,14 @@ void put_labels(View<Rgb8> dst, std::span<const Person> people, bool metric, con
   constexpr std::size_t kMostLines = 2;
   for (std::size_t n = 0; n < people.size() && n < kMostLines; ++n) {
     const std::vector<Label> labels = labels_of(people[n], metric);
+    int end = 0;
     for (std::size_t i = 0; i < labels.size(); ++i) {
-      const std::string sigma = labels[i].sigma.empty() ? "" : " +-" + labels[i].sigma;
-      const int x =
+      const std::string text = labels[i].text + (labels[i].sigma.empty() ? "" : " +-" + labels[i].sigma);
+      const int column =
           layout.scaled(10) + static_cast<int>(i) * (dst.width() - layout.scaled(20)) / static_cast<int>(labels.size());
-      put_text(dst, labels[i].text + sigma,
-               {x, layout.scaled(people.size() > 1 ? 18 : 26) + static_cast<int>(n) * layout.scaled(20)},
+      const int x = std::max(column, end);  // beyond the column of a long one before
+      end = x + layout.scaled(10) + cv::getTextSize(text, kFace, layout.font(), layout.stroke(), nullptr).width;
+      put_text(dst, text, {x, layout.scaled(people.size() > 1 ? 18 : 26) + static_cast<int>(n) * layout.scaled(20)},
                kColors[static_cast<std::size_t>(labels[i].state)], layout);
     }
   }

@@ -14,6 +14,7 @@ struct Bone {
   const JointDef *from, *to;
   Vec3 start_in_rig_m, along_m;
   double inverse_length2;  // 1/m², 0 for a single joint
+  double wide;             // times the joints' radii
 };
 
 std::vector<Bone> bones_of(std::span<const Person> people) {
@@ -27,8 +28,9 @@ std::vector<Bone> bones_of(std::span<const Person> people) {
       const bool joined = joint.parent >= 0 && person.joints[parent].state != JointState::kLost;
       const Vec3 along_m = joined ? person.joints[parent].p_in_rig_m - from.p_in_rig_m : Vec3{};
       const double length2 = dot(along_m, along_m);
+      constexpr double kTrunk = 1.4;  // whose skin is farther beside its bones than before them
       bones.push_back({&joint, joined ? &person.skeleton->joints[parent] : &joint, from.p_in_rig_m, along_m,
-                       length2 > 0 ? 1 / length2 : 0});
+                       length2 > 0 ? 1 / length2 : 0, joint.side == Side::kMiddle ? kTrunk : 1});
     }
   return bones;
 }
@@ -39,7 +41,7 @@ const JointDef* part_at(Vec3 p_in_rig_m, const std::vector<Bone>& bones) {
     const Vec3 from_start = p_in_rig_m - bone.start_in_rig_m;
     const double t = std::clamp(dot(from_start, bone.along_m) * bone.inverse_length2, 0.0, 1.0);
     const Vec3 off = from_start - t * bone.along_m;
-    const double radius_m = (1 - t) * bone.from->radius_m + t * bone.to->radius_m;
+    const double radius_m = bone.wide * ((1 - t) * bone.from->radius_m + t * bone.to->radius_m);
     if (dot(off, off) < radius_m * radius_m) return t < 0.5 ? bone.from : bone.to;
   }
   return nullptr;
@@ -67,7 +69,7 @@ Rgb8 shade_of(JointId joint) {
                  kLeftHip = static_cast<std::size_t>(JointId::kLeftHip),
                  kRightHip = static_cast<std::size_t>(JointId::kRightHip);
   constexpr std::size_t kSide = 4;  // joints of a limb
-  const auto id = static_cast<std::size_t>(joint);
+  const auto id = static_cast<std::size_t>(is_finger(joint) ? JointId::kLeftHand : joint);
   const std::size_t sides_before = (id >= kRightShoulder) + (id >= kRightHip);
   static_assert(kLeftHip == kRightShoulder + kSide && kRightHip == kLeftHip + kSide);
   return kShades[id - kSide * sides_before];

@@ -53,6 +53,20 @@ TEST(Shapes, BonesAndMarksByHand) {
   EXPECT_EQ(without.joints.size(), 2u);
 }
 
+/// A finger has thin bones and no boxes; the hand's shade is its own.
+TEST(Shapes, FingersAreThin) {
+  Moment moment({320, 240});
+  Person person = person_with(kBodyHands);
+  for (const JointId id : {JointId::kLeftWrist, JointId::kLeftIndexMcp, JointId::kLeftIndexPip})
+    joint_of(person, id) = joint({0, 0, 2});
+  moment.people = {person};
+  const Shapes shapes = shapes_of(moment.people, clip_header({320, 240}));
+  EXPECT_EQ(shapes.joints.size(), 1u);
+  ASSERT_EQ(shapes.bones.size(), 2u);
+  EXPECT_TRUE(shapes.bones[0].thin && shapes.bones[1].thin);
+  EXPECT_EQ(shade_of(JointId::kRightPinkyTip), shade_of(JointId::kRightHand));
+}
+
 TEST(Shapes, LabelsByHand) {
   const Moment moment({320, 240});
   const std::vector<Label> labels = labels_of(moment.people[0]);
@@ -67,6 +81,13 @@ TEST(Shapes, LabelsByHand) {
   ASSERT_EQ(summary.size(), 1u);
   EXPECT_EQ(summary[0].text, "person 3: 1 of 21 joints seen");
   EXPECT_EQ(summary[0].state, JointState::kSeen);
+  Person hands = person_with(kBodyHands, 3);
+  joint_of(hands, JointId::kLeftThumbTip) = joint({0, 0, 2});
+  joint_of(hands, JointId::kLeftIndexTip) = joint({0.024, 0, 2});
+  const std::vector<Label> with_pinch = labels_of(hands);
+  ASSERT_EQ(with_pinch.size(), 2u);
+  EXPECT_EQ(with_pinch[0].text, "person 3: 2 of 61 joints seen");
+  EXPECT_EQ(with_pinch[1].text + " " + with_pinch[1].sigma, "left pinch 2.4 1.0 cm");
 }
 
 TEST(Shapes, EachPartOfTheBodyHasAShadeOfItsOwn) {
@@ -94,6 +115,8 @@ TEST(Shades, AreExplainedByLimbsWhereThereAreManyJoints) {
   header.skeletons = {&kRightArm, &kLeftArm};
   EXPECT_EQ(keys(), "shoulder 1, elbow 1, hand 1, ");
   header.skeletons = {&kBody};
+  EXPECT_EQ(keys(), "trunk 5, arm 4, leg 4, ");
+  header.skeletons = {&kBodyHands};
   EXPECT_EQ(keys(), "trunk 5, arm 4, leg 4, ");
 }
 

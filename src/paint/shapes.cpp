@@ -18,6 +18,13 @@ Shapes::Mark mark_of(const Joint& joint, const TrackHeader& header) {
           std::clamp(joint.sigma_m() * px_per_m, width / 200, 3 * width), joint.state != JointState::kSeen};
 }
 
+/// Whether a joint is the centre of a palm whose fingers are known, which show the hand better than a box.
+bool has_fingers(const Person& person, JointId id) {
+  if (id != JointId::kLeftHand && id != JointId::kRightHand) return false;
+  const Joint* root = person.find(id == JointId::kLeftHand ? JointId::kLeftMiddleMcp : JointId::kRightMiddleMcp);
+  return root != nullptr && root->state != JointState::kLost;
+}
+
 }  // namespace
 
 Shapes shapes_of(std::span<const Person> people, const TrackHeader& header) {
@@ -26,13 +33,15 @@ Shapes shapes_of(std::span<const Person> people, const TrackHeader& header) {
     for (std::size_t j = 0; j < person.count(); ++j) {
       const Joint& joint = person.joints[j];
       if (joint.state == JointState::kLost) continue;
-      out.joints.push_back(mark_of(joint, header));
+      const JointId id = person.skeleton->joints[j].id;
+      const bool finger = is_finger(id);
+      if (!finger && !has_fingers(person, id)) out.joints.push_back(mark_of(joint, header));
       const int parent = person.skeleton->joints[j].parent;
       if (parent < 0) continue;
       const Joint& from = person.joints[static_cast<std::size_t>(parent)];
       if (from.state == JointState::kLost) continue;
       const bool broken = from.state != JointState::kSeen || joint.state != JointState::kSeen;
-      out.bones.push_back({from.u_px, from.v_px, joint.u_px, joint.v_px, broken});
+      out.bones.push_back({from.u_px, from.v_px, joint.u_px, joint.v_px, broken, finger});
     }
   return out;
 }
@@ -43,8 +52,13 @@ std::vector<Label> labels_of(const Person& person, bool metric) {
   if (person.count() > kMost) {
     std::size_t seen = 0;
     for (std::size_t j = 0; j < person.count(); ++j) seen += person.joints[j].state == JointState::kSeen;
-    return {{fmt::format("person {}: {} of {} joints seen", person.id, seen, person.count()), "",
-             static_cast<JointState>(person.presence)}};
+    out.push_back({fmt::format("person {}: {} of {} joints seen", person.id, seen, person.count()), "",
+                   static_cast<JointState>(person.presence)});
+    for (const Side side : {Side::kLeft, Side::kRight})
+      if (const auto pinch = pinch_of(person, side); pinch && metric)
+        out.push_back({fmt::format("{} pinch {:.1f}", side == Side::kLeft ? "left" : "right", 100 * pinch->distance_m),
+                       fmt::format("{:.1f} cm", 100 * pinch->sigma_m), JointState::kSeen});
+    return out;
   }
   for (std::size_t j = person.count(); j-- > 0;) {
     const Joint& joint = person.joints[j];
@@ -62,6 +76,7 @@ std::vector<JointId> shaded_joints(const TrackHeader& header) {
   std::vector<JointId> out;
   for (const Skeleton* skeleton : header.skeletons)
     for (const JointDef& joint : skeleton->joints) {
+      if (is_finger(joint.id)) continue;  // its shade is the hand's
       const auto same = [&](JointId other) { return part_of(other) == part_of(joint.id); };
       if (std::none_of(out.begin(), out.end(), same)) out.push_back(joint.id);
     }

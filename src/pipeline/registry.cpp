@@ -41,7 +41,10 @@ struct KnownTracker {
   std::string_view name;
   std::unique_ptr<Tracker> (*make)();
 };
-constexpr KnownTracker kTrackers[] = {{"body", make_body_tracker}, {"arm", make_arm_tracker}, {"thesis", make_thesis_tracker}};
+constexpr KnownTracker kTrackers[] = {{"body", make_body_tracker},
+                                      {"body_hands", make_body_hands_tracker},
+                                      {"arm", make_arm_tracker},
+                                      {"thesis", make_thesis_tracker}};
 
 }  // namespace
 

@@ -27,7 +27,8 @@ std::string offset_text(Vec3 v) { return fmt::format("OFFSET {} {} {}", number(v
 
 /// The joint and all that hangs from it.
 std::string hierarchy(const MotionTrack& track, std::size_t joint, int depth) {
-  constexpr double kEnd_m = 0.1;  // fingers, toes, the top of the head
+  // Fingers, toes, the top of the head; beyond the tip of a finger its nail.
+  const double end_m = is_finger(track.skeleton().joints[joint].id) ? 0.005 : 0.1;
   const std::string tabs(static_cast<std::size_t>(depth), '\t');
   const bool root = depth == 0;
   std::string out =
@@ -36,8 +37,8 @@ std::string hierarchy(const MotionTrack& track, std::size_t joint, int depth) {
                   root ? "6 Xposition Yposition Zposition " : "3 ");
   for (const std::size_t child : track.children(joint)) out += hierarchy(track, child, depth + 1);
   if (track.children(joint).empty()) {
-    const Vec3 end_m = kEnd_m * rest_direction(track.skeleton().joints[joint].id, BodyAxes::kRightHanded);
-    out += fmt::format("{0}\tEnd Site\n{0}\t{{\n{0}\t\t{1}\n{0}\t}}\n", tabs, offset_text(end_m));
+    const Vec3 end = end_m * rest_direction(track.skeleton().joints[joint].id, BodyAxes::kRightHanded);
+    out += fmt::format("{0}\tEnd Site\n{0}\t{{\n{0}\t\t{1}\n{0}\t}}\n", tabs, offset_text(end));
   }
   return out + tabs + "}\n";
 }

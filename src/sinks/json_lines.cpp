@@ -68,12 +68,23 @@ std::string text_of(const Joint& joint) {
                      state_text(joint.state), number(joint.confidence, 3), number(joint.sigma_m(), 4));
 }
 
+/// Of a person whose skeleton has fingers.
+std::string pinch_text(const Person& person) {
+  const auto text = [&](Side side) {
+    const auto pinch = pinch_of(person, side);
+    return pinch ? fmt::format(R"({{"distance_m":{},"sigma_m":{}}})", number(pinch->distance_m, 4), number(pinch->sigma_m, 4))
+                 : "null";
+  };
+  return fmt::format(R"("pinch":{{"left":{},"right":{}}},)", text(Side::kLeft), text(Side::kRight));
+}
+
 std::string text_of(const Person& person) {
   std::vector<std::string> joints;
   for (std::size_t j = 0; j < person.count(); ++j)
     joints.push_back(fmt::format(R"("{}":{})", person.skeleton->joints[j].name, text_of(person.joints[j])));
-  return fmt::format(R"({{"id":{},"skeleton":"{}","joints":{{{}}}}})", person.id, person.skeleton->name,
-                     fmt::join(joints, ","));
+  const bool has_fingers = person.skeleton != nullptr && person.skeleton->index_of(JointId::kLeftThumbTip).has_value();
+  return fmt::format(R"({{"id":{},"skeleton":"{}",{}"joints":{{{}}}}})", person.id, person.skeleton->name,
+                     has_fingers ? pinch_text(person) : "", fmt::join(joints, ","));
 }
 
 std::string frame_line(const TrackedFrame& frame, bool live) {

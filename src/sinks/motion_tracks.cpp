@@ -10,12 +10,16 @@
 
 namespace duo {
 
-std::string_view bone_name(JointId joint) {
-  constexpr std::array<std::string_view, kJointIds> kBoneNames = {
+std::string bone_name(JointId joint) {
+  constexpr std::array<std::string_view, kBodyJointIds> kBoneNames = {
       "Hips",      "Spine",    "Chest",       "Neck",         "Head",       "LeftArm",   "LeftForeArm",
       "LeftWrist", "LeftHand", "RightArm",    "RightForeArm", "RightWrist", "RightHand", "LeftUpLeg",
       "LeftLeg",   "LeftFoot", "LeftToeBase", "RightUpLeg",   "RightLeg",   "RightFoot", "RightToeBase"};
-  return kBoneNames[static_cast<std::size_t>(joint)];
+  constexpr std::array<std::string_view, 5> kFingers = {"Thumb", "Index", "Middle", "Ring", "Pinky"};
+  const auto at = static_cast<std::size_t>(joint);
+  if (!is_finger(joint)) return std::string(kBoneNames[at]);
+  const std::size_t in_hand = (at - kBodyJointIds) % kFingerJoints;
+  return fmt::format("{}Hand{}{}", joint < JointId::kRightThumbCmc ? "Left" : "Right", kFingers[in_hand / 4], in_hand % 4 + 1);
 }
 
 std::size_t FrameSlots::slot_at(double t_s) {
@@ -47,9 +51,7 @@ void MotionTrack::add(std::size_t slot, const Person& person) {
   frames_[slot] = std::move(*places);
 }
 
-std::string MotionTrack::joint_name(std::size_t joint) const {
-  return std::string(bone_name(skeleton_.joints[joint].id)) + name_end_;
-}
+std::string MotionTrack::joint_name(std::size_t joint) const { return bone_name(skeleton_.joints[joint].id) + name_end_; }
 
 double MotionTrack::length_m(std::size_t joint) const {
   constexpr double kUnseen_m = 0.25;

@@ -14,8 +14,8 @@
 
 namespace duo {
 
-/// What animation programs call the bone that begins at a joint: "LeftForeArm".
-std::string_view bone_name(JointId joint);
+/// What animation programs call the bone that begins at a joint: "LeftForeArm", "LeftHandIndex1".
+std::string bone_name(JointId joint);
 
 /// Places of frames in a file that has one each frame_s, from the first frame on: a live source may have left frames out.
 class FrameSlots {

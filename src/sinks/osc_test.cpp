@@ -85,6 +85,40 @@ TEST(Osc, AddressesAndValues) {
   EXPECT_EQ(by_path.count("/duoptic/person/2/left_shoulder"), 0u);
 }
 
+/// With fingers a pinch is sent where it is known. Eight such people take more than a datagram holds: each packet begins with
+/// the frame's number, and no person is cut.
+TEST(Osc, FingersOfManyPeople) {
+  Receiver receiver;
+  auto sink = make_osc(receiver.target(), Axes::kOpencv);
+  ASSERT_TRUE(sink) << sink.error().what;
+  Instant instant;
+  for (std::uint32_t id = 1; id <= 8; ++id) {
+    instant.people.push_back(person_with(kBodyHands, id));
+    for (std::size_t j = 0; j < kJointIds; ++j) instant.people.back().joints[j] = joint({0.001 * static_cast<double>(j), 0, 2});
+  }
+  instant.people[0].joints[static_cast<std::size_t>(JointId::kRightIndexTip)].state = JointState::kLost;
+  ASSERT_TRUE((*sink)->write(instant.tracked(7)));
+  EXPECT_EQ((*sink)->dropped(), 0);
+  std::map<std::string, Message> by_path;
+  int packets = 0;
+  while (by_path.count("/duoptic/person/8/right_pinch") == 0) {
+    const auto got = receiver.next();
+    ASSERT_FALSE(got.empty()) << "after " << packets << " packets";
+    ++packets;
+    EXPECT_EQ(got[0].path, "/duoptic/frame");
+    EXPECT_EQ(got[0].numbers[0], 7);
+    const std::string last = got.back().path;
+    EXPECT_EQ(last.substr(last.rfind('/')), "/right_pinch") << "a person's last message";
+    for (const Message& m : got) by_path[m.path] = m;
+  }
+  EXPECT_GT(packets, 1);
+  EXPECT_EQ(by_path.size(), 1u + 8 * (2 * kJointIds + 2) - 2);  // a place and a pinch are missing
+  ASSERT_EQ(by_path["/duoptic/person/1/left_pinch"].types, "ff");
+  EXPECT_NEAR(by_path["/duoptic/person/1/left_pinch"].numbers[0], 0.004, 1e-6);  // the tips' numbers differ by four
+  EXPECT_NEAR(by_path["/duoptic/person/1/left_pinch"].numbers[1], 0.0125 * std::sqrt(2.0 / 3), 1e-6);
+  EXPECT_EQ(by_path.count("/duoptic/person/1/right_pinch"), 0u);
+}
+
 /// A quaternion x y z w turns a vector: the formula itself, in any axes.
 Vec3 turned(const std::vector<double>& n, Vec3 v) {
   const Vec3 q{n[3], n[4], n[5]};
@@ -197,6 +231,31 @@ TEST(Vmc, RotationsAlone) {
   }
 }
 
+/// By hand: of a body with fingers in its T-pose nothing turns, and all of Unity's bones are sent but jaw and eyes, upper chest
+/// and shoulders.
+TEST(Vmc, FingersAreBones) {
+  Receiver receiver;
+  auto sink = make_vmc(receiver.target());
+  ASSERT_TRUE(sink);
+  Person body = person_with(kBodyHands);
+  for (std::size_t j = 0; j < kJointIds; ++j) {
+    const int parent = kBodyHands.joints[j].parent;
+    const Vec3 from = parent < 0 ? Vec3{0, 0, 2} : body.joints[static_cast<std::size_t>(parent)].p_in_rig_m;
+    body.joints[j] = joint(parent < 0 ? from : from - 0.1 * rest_direction(kBodyHands.joints[j].id, BodyAxes::kLeftHanded));
+  }
+  Instant instant;
+  instant.people = {body};
+  ASSERT_TRUE((*sink)->write(instant.tracked(0)));
+  const auto got = receiver.next();
+  std::map<std::string, std::vector<double>> bones;
+  for (std::size_t i = 3; i < got.size(); ++i) bones[got[i].words[0]] = got[i].numbers;
+  EXPECT_EQ(bones.size(), 19u + 30);
+  for (const auto& [name, n] : bones) EXPECT_NEAR(n[6], 1, 1e-6) << name;
+  EXPECT_NEAR(bones["LeftIndexIntermediate"][0], -0.1, 1e-6);
+  EXPECT_NEAR(bones["RightLittleDistal"][0], 0.1, 1e-6);
+  EXPECT_NEAR(bones["RightThumbDistal"][2], 0.1 * std::sqrt(0.5), 1e-6);
+}
+
 /// By hand: a body in its T-pose has no turns; its hands' centres are no bones, and of two bodies the first is sent.
 TEST(Vmc, ABodyByWalkingItsTable) {
   Receiver receiver;
@@ -214,10 +273,10 @@ TEST(Vmc, ABodyByWalkingItsTable) {
   instant.people[1].id = 2;
   ASSERT_TRUE((*sink)->write(instant.tracked(0)));
   const auto got = receiver.next();
-  ASSERT_EQ(got.size(), 3u + kJointIds - 2);
+  ASSERT_EQ(got.size(), 3u + kBody.joints.size() - 2);
   std::map<std::string, std::vector<double>> bones;
   for (std::size_t i = 3; i < got.size(); ++i) bones[got[i].words[0]] = got[i].numbers;
-  EXPECT_EQ(bones.size(), kJointIds - 2);
+  EXPECT_EQ(bones.size(), kBody.joints.size() - 2);
   for (const auto& [name, n] : bones) EXPECT_NEAR(n[6], 1, 1e-6) << name;
   EXPECT_NEAR(bones["LeftLowerLeg"][1], -0.2, 1e-6);
   EXPECT_NEAR(bones["LeftHand"][0], -0.2, 1e-6);

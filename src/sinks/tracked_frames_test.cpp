@@ -75,6 +75,25 @@ TEST(JsonLines, SeveralPersonsAndNone) {
                 R"({"type":"frame","frame":1,"t_s":0.033333,"people":[]})" + "\n");
 }
 
+/// By hand: the tips of one hand are 3 cm apart, the other one's are lost.
+TEST(JsonLines, APersonWithFingersHasAPinch) {
+  const test::TempFolder folder;
+  Moment moment({64, 48});
+  Person person = person_with(kBodyHands);
+  joint_of(person, JointId::kRightThumbTip) = joint({0.1, 0, 2});
+  joint_of(person, JointId::kRightIndexTip) = joint({0.13, 0, 2});
+  moment.people = {person};
+  auto sink = make_json_lines(folder / "hands.jsonl", clip_header({64, 48}));
+  ASSERT_TRUE(sink);
+  ASSERT_TRUE((*sink)->write(moment.tracked(0)));
+  ASSERT_TRUE((*sink)->finish());
+  const std::string text = bytes_of(folder / "hands.jsonl");
+  EXPECT_NE(text.find(R"({"id":1,"skeleton":"body_hands","pinch":{"left":null,"right":{"distance_m":0.0300,"sigma_m":0.0102}},)"
+                      R"("joints":{"pelvis":)"),
+            std::string::npos);
+  EXPECT_NE(text.find(R"("right_thumb_tip":{"p_in_rig_m":[0.1000,0.0000,2.0000])"), std::string::npos);
+}
+
 TEST(JsonLines, NothingIsCalledMetresWhereNothingIsMetric) {
   const test::TempFolder folder;
   TrackHeader header = clip_header({64, 48});

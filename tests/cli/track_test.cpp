@@ -174,6 +174,8 @@ TEST_F(Track, BadSelections) {
   const std::string rest = " --select elbow=160,77 --select shoulder=160,54";
   expect_failure(pair + "--tracker arm", kUsage, "--select");
   expect_failure(pair + "--tracker body" + kSelect, kUsage, "leave out");
+  expect_failure(pair + "--hands" + kSelect, kUsage, "the tracker arm has no fingers");
+  expect_failure(pair + "--hands --tracker thesis" + kSelect, kUsage, "leave out --hands");
   expect_failure(pair + "--select hand=160,100 --select elbow=160,77", kUsage, "right_shoulder is missing");
   expect_failure(pair + "--select hand=1,1 --select hand=2,2" + rest, kUsage, "right_hand is given twice");
   for (const char* bad :
@@ -255,6 +257,13 @@ TEST_F(Track, EvalClipAgainstATruthFile) {
   EXPECT_EQ(lost["tracker"], "body");
   EXPECT_EQ(lost["joints"]["left_elbow"]["lost_or_off_percent"], 100.0);
   EXPECT_EQ(lost["joints"].size(), 3u);  // those that the truth has
+
+  // With fingers the same joints are scored: this truth has no fingers.
+  const Ended hands = run("eval clip clip --json --hands");
+  ASSERT_EQ(hands.exit, 0) << hands.err;
+  const auto with_hands = nlohmann::json::parse(hands.out, nullptr, false)["clips"][0];
+  EXPECT_EQ(with_hands["tracker"], "body_hands");
+  EXPECT_EQ(with_hands["joints"].size(), 3u);
 
   const auto fails = [&](const std::string& folder, const std::string& words) {
     const Ended bad = run("eval clip " + folder);

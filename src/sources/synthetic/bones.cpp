@@ -33,6 +33,35 @@ Limb reach(Vec3 root_m, Vec3 end_m, Vec3 bend, double upper_m, double lower_m) {
 
 }  // namespace
 
+Fingers make_fingers(const ArmPose& pose, int side) {
+  struct Shape {
+    double x, y, first, second;
+  };
+  constexpr std::array<Shape, 4> kShapes = {{{0.029, 0.086, 0.041, 0.036},
+                                             {0.0098, 0.09, 0.046, 0.041},
+                                             {-0.0098, 0.088, 0.042, 0.037},
+                                             {-0.028, 0.08, 0.033, 0.028}}};
+  constexpr double kInPalm_m = 0.012, kPinched_degrees = 38;
+  const double thumb = -outwards(side);
+  Fingers out;
+  for (std::size_t i = 0; i < kShapes.size(); ++i) {
+    const Shape& shape = kShapes[i];
+    const double spread = 0.12 * shape.x / 0.029;
+    const double curl = i == 0 ? pose.curl_degrees + pose.pinch * (kPinched_degrees - pose.curl_degrees) : pose.curl_degrees;
+    const auto towards = [&](double degrees) { return about_x(degrees) * normalized(Vec3{thumb * spread, 1, 0}); };
+    Finger& finger = out[1 + i];
+    finger.root_m = {thumb * shape.x, shape.y - kInPalm_m, 0};
+    finger.bend_m = finger.root_m + (shape.first + kInPalm_m) * towards(curl);
+    finger.tip_m = finger.bend_m + shape.second * towards(2.2 * curl);
+  }
+  // The thumb goes to the finger, whose skin is as thick as its own.
+  const Vec3 touch = out[1].tip_m + Vec3{thumb * 0.004, -0.012, 0.008};
+  out[0] = {{thumb * 0.02, 0.02, 0.008}, {thumb * 0.046, 0.053, 0.014}, {thumb * 0.06, 0.098, 0.018}};
+  out[0].bend_m = out[0].bend_m + pose.pinch * Vec3{0, 0.004, 0.022};
+  out[0].tip_m = out[0].tip_m + pose.pinch * (touch - out[0].tip_m);
+  return out;
+}
+
 Bones make_bones(const Pose& pose, double scale) {
   Bones out;
   out.scale = scale;
@@ -55,7 +84,7 @@ Bones make_bones(const Pose& pose, double scale) {
     const Vec3 forearm = normalized(limb.end_m - limb.middle_m), hand = normalized(forearm + turned(arm.fingers));
     const Vec3 palm = turned(arm.palm);
     limb.person_from_end = along(limb.end_m, limb.end_m + hand, cross(hand, palm));
-    out.curl_degrees[side] = arm.curl_degrees;
+    out.fingers[side] = make_fingers(arm, side);
     out.hands_m[side] = limb.end_m + scale * kPalm_m * hand;
 
     const LegPose& leg = pose.legs[side];

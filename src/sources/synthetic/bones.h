@@ -20,6 +20,7 @@ struct ArmPose {
   Vec3 palm;     // the palm faces there
   Vec3 fingers;  // added to the forearm's direction: bends the wrist
   double curl_degrees = 18;
+  double pinch = 0;  // 1: the tips of thumb and index finger touch
 };
 
 /// A leg in the person's frame: x outwards, y down, z to the back, of a person of 1.75 m, whichever side.
@@ -38,6 +39,15 @@ struct Pose {
   double look_degrees = 0, nod_degrees = 0;    // of the head
 };
 
+/// A finger in the frame of its hand, where y goes to the fingers and z out of the palm: where it leaves the palm, where it
+/// bends, and the middle of its tip.
+struct Finger {
+  Vec3 root_m, bend_m, tip_m;
+};
+/// The thumb first, of a person of 1.75 m.
+using Fingers = std::array<Finger, 5>;
+Fingers make_fingers(const ArmPose& pose, int side);
+
 /// Two bones and what hangs on them; the frames have y along their bone.
 struct Limb {
   Rigid3 person_from_upper, person_from_lower, person_from_end;
@@ -50,7 +60,7 @@ struct Bones {
   std::array<Limb, 2> arms, legs;
   std::array<Vec3, 2> hands_m;  // palm centres
   std::array<Vec3, 2> feet_m;   // where the toes begin
-  std::array<double, 2> curl_degrees{};
+  std::array<Fingers, 2> fingers;
   Vec3 head_m, neck_m, pelvis_m;
 };
 

@@ -60,16 +60,27 @@ struct NamedJoint {
 
 std::vector<NamedJoint> joints_of(const Bones& bones) {
   const auto &l = bones.arms[kLeftSide], &r = bones.arms[kRightSide], &ll = bones.legs[kLeftSide], &rl = bones.legs[kRightSide];
-  return {{JointId::kLeftShoulder, l.root_m},  {JointId::kLeftElbow, l.middle_m},
-          {JointId::kLeftWrist, l.end_m},      {JointId::kLeftHand, bones.hands_m[kLeftSide]},
-          {JointId::kLeftHip, ll.root_m},      {JointId::kLeftKnee, ll.middle_m},
-          {JointId::kLeftAnkle, ll.end_m},     {JointId::kLeftFoot, bones.feet_m[kLeftSide]},
-          {JointId::kRightShoulder, r.root_m}, {JointId::kRightElbow, r.middle_m},
-          {JointId::kRightWrist, r.end_m},     {JointId::kRightHand, bones.hands_m[kRightSide]},
-          {JointId::kRightHip, rl.root_m},     {JointId::kRightKnee, rl.middle_m},
-          {JointId::kRightAnkle, rl.end_m},    {JointId::kRightFoot, bones.feet_m[kRightSide]},
-          {JointId::kHead, bones.head_m},      {JointId::kNeck, bones.neck_m},
-          {JointId::kPelvis, bones.pelvis_m}};
+  std::vector<NamedJoint> out = {{JointId::kLeftShoulder, l.root_m},  {JointId::kLeftElbow, l.middle_m},
+                                 {JointId::kLeftWrist, l.end_m},      {JointId::kLeftHand, bones.hands_m[kLeftSide]},
+                                 {JointId::kLeftHip, ll.root_m},      {JointId::kLeftKnee, ll.middle_m},
+                                 {JointId::kLeftAnkle, ll.end_m},     {JointId::kLeftFoot, bones.feet_m[kLeftSide]},
+                                 {JointId::kRightShoulder, r.root_m}, {JointId::kRightElbow, r.middle_m},
+                                 {JointId::kRightWrist, r.end_m},     {JointId::kRightHand, bones.hands_m[kRightSide]},
+                                 {JointId::kRightHip, rl.root_m},     {JointId::kRightKnee, rl.middle_m},
+                                 {JointId::kRightAnkle, rl.end_m},    {JointId::kRightFoot, bones.feet_m[kRightSide]},
+                                 {JointId::kHead, bones.head_m},      {JointId::kNeck, bones.neck_m},
+                                 {JointId::kPelvis, bones.pelvis_m}};
+  // Fingers bend once: of the two joints between root and tip the first.
+  constexpr std::array<std::size_t, 3> kBent = {0, 1, 3};
+  for (const int side : {kLeftSide, kRightSide})
+    for (std::size_t finger = 0; finger < 5; ++finger) {
+      const Finger& bent = bones.fingers[side][finger];
+      const Vec3 at_m[] = {bent.root_m, bent.bend_m, bent.tip_m};
+      for (std::size_t i = 0; i < 3; ++i)
+        out.push_back({finger_joint(side == kLeftSide ? duo::Side::kLeft : duo::Side::kRight, 4 * finger + kBent[i]),
+                       bones.arms[side].person_from_end * (bones.scale * at_m[i])});
+    }
+  return out;
 }
 
 // A joint in one camera.
@@ -251,6 +262,8 @@ SyntheticClip::Pinhole SyntheticClip::pinhole(int index) {
 }
 
 double SyntheticClip::tolerance_m(JointId joint) {
+  constexpr double kFinger_m = 0.025;
+  if (is_finger(joint)) return kFinger_m;
   constexpr std::pair<const char*, double> kTolerances[] = {
       {"shoulder", 0.14}, {"elbow", 0.1}, {"wrist", 0.065}, {"hand", 0.06}, {"hip", 0.17},   {"knee", 0.1},
       {"ankle", 0.09},    {"foot", 0.08}, {"head", 0.16},   {"neck", 0.1},  {"pelvis", 0.18}};

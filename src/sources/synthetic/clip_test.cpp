@@ -117,7 +117,7 @@ TEST(SyntheticPerson, TruthAgreesWithLensAndDepth) {
     int visible = 0;
     for (int i = 0; i < clip.setup().frames; i += 61) {
       const SyntheticClipFrame frame = clip.frame(i);
-      ASSERT_EQ(frame.joints.size(), 19U);
+      ASSERT_EQ(frame.joints.size(), 49U);
       for (const SyntheticJoint& j : frame.joints) {
         EXPECT_TRUE(!j.visible_left || j.in_left);
         if (j.uv_left_px) {
@@ -212,6 +212,21 @@ TEST(SyntheticPerson, MovesSmoothly) {
       hand_before = hand;
       foot_before = foot;
     }
+  }
+}
+
+/// Tips that meet touch skin to skin, whichever hand; open they are a hand's breadth apart.
+TEST(SyntheticPerson, PinchesWithThumbAndIndexFinger) {
+  for (const int side : {kRightSide, kLeftSide}) {
+    const auto apart_m = [side](double pinch) {
+      ArmPose arm;
+      arm.pinch = pinch;
+      const Fingers fingers = make_fingers(arm, side);
+      return norm(fingers[0].tip_m - fingers[1].tip_m);
+    };
+    EXPECT_NEAR(apart_m(1), 0.015, 0.003);
+    EXPECT_GT(apart_m(0), 0.06);
+    EXPECT_LT(apart_m(0.5), apart_m(0));
   }
 }
 

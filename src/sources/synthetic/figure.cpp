@@ -188,26 +188,17 @@ struct Dresser {
   // y towards the fingers, z out of the palm.
   void hand(Flesh& f, int side) const {
     f.on(bones.arms[side].person_from_end, rest.hand(side));
-    const double thumb = -outwards(side), curl = bones.curl_degrees[side];
     f.lobe({0, 0.012, 0}, {0, 0.066, 0}, 0.029, 0.039, {.flat = 2.3, .soft_m = 0.025});
-    struct Finger {
-      double x, y, first, second, radius;
-    };
-    constexpr std::array<Finger, 4> kFingers = {{{0.029, 0.086, 0.041, 0.036, 0.0098},
-                                                 {0.0098, 0.09, 0.046, 0.041, 0.0102},
-                                                 {-0.0098, 0.088, 0.042, 0.037, 0.0097},
-                                                 {-0.028, 0.08, 0.033, 0.028, 0.0088}}};
-    for (const Finger& finger : kFingers) {
-      const double spread = 0.12 * finger.x / 0.029;
-      const auto towards = [&](double degrees) { return about_x(degrees) * normalized(Vec3{thumb * spread, 1, 0}); };
-      const Vec3 root{thumb * finger.x, finger.y - 0.012, 0}, knuckle = root + (finger.first + 0.012) * towards(curl);
-      f.lobe(root, knuckle, finger.radius, 0.93 * finger.radius, {.soft_m = 0.009});
-      f.lobe(knuckle, knuckle + finger.second * towards(2.2 * curl), 0.93 * finger.radius, 0.78 * finger.radius,
-             {.soft_m = 0.005});
+    constexpr std::array<double, 4> kRadii_m = {0.0098, 0.0102, 0.0097, 0.0088};
+    const Fingers& fingers = bones.fingers[side];
+    for (std::size_t i = 0; i < kRadii_m.size(); ++i) {
+      const Finger& finger = fingers[1 + i];
+      f.lobe(finger.root_m, finger.bend_m, kRadii_m[i], 0.93 * kRadii_m[i], {.soft_m = 0.009});
+      f.lobe(finger.bend_m, finger.tip_m, 0.93 * kRadii_m[i], 0.78 * kRadii_m[i], {.soft_m = 0.005});
     }
-    const Vec3 base{thumb * 0.02, 0.02, 0.008}, ball{thumb * 0.046, 0.053, 0.014}, tip{thumb * 0.06, 0.098, 0.018};
-    f.lobe(base, ball, 0.0165, 0.0135, {.soft_m = 0.02});
-    f.lobe(ball, tip, 0.0125, 0.0092, {.soft_m = 0.008});
+    const Finger& thumb = fingers[0];
+    f.lobe(thumb.root_m, thumb.bend_m, 0.0165, 0.0135, {.soft_m = 0.02});
+    f.lobe(thumb.bend_m, thumb.tip_m, 0.0125, 0.0092, {.soft_m = 0.008});
   }
 };
 

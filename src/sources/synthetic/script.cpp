@@ -65,6 +65,21 @@ Act light() {
   return act;
 }
 
+// The hand is held up and turns a little; thumb and index finger meet and part.
+Act pinch() {
+  const auto held = [](double pinch, double aside) {
+    return ArmPose{{0.16 + aside, 0.02, -0.42}, {0.6, 1, 0}, {-0.35 + 2 * aside, 0, -1}, {0, -1.1, 0}, 14, pinch};
+  };
+  return {"pinch", from_rest({{0.9, held(0, 0)},
+                              {1.15, held(1, 0.02)},
+                              {1.4, held(1, 0.04)},
+                              {1.7, held(0, 0.06)},
+                              {2.0, held(1, 0.02)},
+                              {2.2, held(0.5, -0.02)},
+                              {2.5, held(0, -0.04)}},
+                             3.3)};
+}
+
 // --- Of the whole body ---------------------------------------------------------------------------------------------------
 
 Act of_body(std::string_view name, std::vector<WayPoint> between, std::vector<Stance> stances) {
@@ -125,10 +140,11 @@ WayPoint on_way(const std::vector<WayPoint>& way, double t_s) {
   const auto [a, b, done] = around(way, t_s);
   const double x = eased(done);
   const auto mid = [x](double p, double q) { return (1 - x) * p + x * q; };
-  return {t_s,
-          {between(a.arm.wrist_m, b.arm.wrist_m, x), between(a.arm.elbow, b.arm.elbow, x), between(a.arm.palm, b.arm.palm, x),
-           between(a.arm.fingers, b.arm.fingers, x), mid(a.arm.curl_degrees, b.arm.curl_degrees)},
-          mid(a.twist_degrees, b.twist_degrees)};
+  return {
+      t_s,
+      {between(a.arm.wrist_m, b.arm.wrist_m, x), between(a.arm.elbow, b.arm.elbow, x), between(a.arm.palm, b.arm.palm, x),
+       between(a.arm.fingers, b.arm.fingers, x), mid(a.arm.curl_degrees, b.arm.curl_degrees), mid(a.arm.pinch, b.arm.pinch)},
+      mid(a.twist_degrees, b.twist_degrees)};
 }
 
 Stance stance_at(const std::vector<Stance>& stances, double t_s) {
@@ -189,14 +205,14 @@ double lamp_at(const Act& act, double t_s) {
 }  // namespace
 
 std::vector<std::string> act_names() {
-  return {"wave", "reach", "sweep", "behind", "out", "light", "turn", "walk", "sit", "cross"};
+  return {"wave", "reach", "sweep", "behind", "out", "light", "pinch", "turn", "walk", "sit", "cross"};
 }
 
 std::vector<Act> acts_of(std::string_view script) {
   const std::vector<Act> tour = {wave(), reach(), sweep(), behind(), out(), light()};
   if (script == "tour") return tour;
   std::vector<Act> all = tour;
-  for (const auto& act : {turn_around, walk_across, sit_down, cross_ways}) all.push_back(act());
+  for (const auto& act : {pinch, turn_around, walk_across, sit_down, cross_ways}) all.push_back(act());
   for (const Act& act : all)
     if (act.name == script) return {act};
   return {};

@@ -60,8 +60,8 @@ class Script {
   std::uint32_t seed_;
 };
 
-/// wave, reach, sweep, behind, out, light of an arm, tour: all of these; turn, walk, sit, cross of the whole body. Empty when
-/// there is no such script.
+/// wave, reach, sweep, behind, out, light of an arm, tour: all of these; pinch of its fingers; turn, walk, sit, cross of the
+/// whole body. Empty when there is no such script.
 std::vector<Act> acts_of(std::string_view script);
 /// What a second person does meanwhile: in cross it comes the other way, nearer to the cameras. Empty: there is none.
 std::vector<Act> second_acts_of(std::string_view script);

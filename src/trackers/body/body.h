@@ -45,7 +45,11 @@ class Body {
   double seen_share() const { return seen_share_; }
   /// Depth of the trunk's skin.
   double trunk_z_m() const { return trunk_z_m_; }
-  /// Fills all joints of `person`, whose skeleton is kBody, but for their pixels.
+  /// Whether the last frame showed a hand to its network, where the body has it.
+  bool shows_hand(bool left) const {
+    return sight_[left ? 0 : 1] == HandSight::kSeen && states_[left ? JointId::kLeftHand : JointId::kRightHand].seen;
+  }
+  /// Fills the joints of kBody, with which the skeleton of `person` begins, but for their pixels.
   void publish(const FrameView& frame, Person& person) const;
 
  private:
@@ -54,6 +58,7 @@ class Body {
     int hidden = 0, shown = 0;  // frames since it was seen, and since it was not
     double sigma_m = 0.1;
     bool seen = false, sure = false;
+    bool cut = false;  // its limb goes on beyond the picture
   };
 
   explicit Body(double scale) : lengths_(scale) {}

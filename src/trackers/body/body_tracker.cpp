@@ -9,6 +9,8 @@
 #include "detectors/small_hands.h"
 #include "duoptic/detector.h"
 #include "trackers/body/body.h"
+#include "trackers/body/filled_margin.h"
+#include "trackers/body/fingers.h"
 #include "trackers/body/newcomers.h"
 #include "trackers/body/uncover.h"
 
@@ -16,17 +18,19 @@ namespace duo {
 namespace {
 
 using body::Body;
+using body::Fingers;
 using body::Uncover;
 
-constexpr std::array<const Skeleton*, 1> kBodies = {&kBody};
 constexpr std::size_t kMostPeople = 8;
 constexpr int kSearchEvery = 8;                    // frames
 constexpr double kAlike = 1, kPerhapsAlike = 2.2;  // Body::unlike() below which two are the same person
 
 class BodyTracker final : public Tracker {
  public:
-  const char* name() const override { return "body"; }
-  std::span<const Skeleton* const> skeletons() const override { return kBodies; }
+  /// `skeleton`: kBody or kBodyHands.
+  BodyTracker(const char* name, const Skeleton& skeleton) : name_(name), skeletons_{&skeleton} {}
+  const char* name() const override { return name_; }
+  std::span<const Skeleton* const> skeletons() const override { return skeletons_; }
   bool starts_by_itself() const override { return true; }
   Wants wants() const override { return {.color = true}; }
   Result<void> prepare(const TrackerSetup& setup) override;
@@ -42,6 +46,7 @@ class BodyTracker final : public Tracker {
     Uncover* uncover = nullptr;  // while somebody is before or behind this person
     bool covered = false;        // somebody is before
     int confirmed = 0;           // frames that showed enough of a new person
+    std::array<Fingers, 2> fingers = {Fingers(true), Fingers(false)};
   };
   /// A tracked person as this frame shows it.
   struct Sight {
@@ -65,9 +70,15 @@ class BodyTracker final : public Tracker {
   /// Those who are gone, and who was taken for somebody by mistake: of a person some joints are seen in each of the first
   /// frames.
   void forget();
+  void track_fingers(Tracked& who, const body::DepthView& depth, const Body::Hands& hands);
   void publish(const body::FrameView& frame);
 
+  bool has_fingers() const { return skeletons_[0] == &kBodyHands; }
+
+  const char* name_;
+  std::array<const Skeleton*, 1> skeletons_;
   std::optional<Lens> lens_;  // empty before prepare()
+  body::FilledMargin margin_;
   TrackerSetup setup_;
   std::unique_ptr<Detector> detector_;
   std::unique_ptr<PeopleFinder> finder_;
@@ -96,6 +107,7 @@ Result<void> BodyTracker::prepare(const TrackerSetup& setup) {
                  make_detector_with_small_hands({.body = setup.body_model, .hands = true, .threads = setup.threads}));
   setup_ = setup;
   lens_.emplace(setup.rig.left);
+  margin_ = body::FilledMargin(setup.rectified, *lens_);
   detector_ = std::move(detector);
   reset();
   return {};
@@ -241,22 +253,26 @@ void BodyTracker::look_elsewhere(const body::FrameView& frame) {
 
 void BodyTracker::look_at_hands() {
   looks_.clear();
-  const bool left = frame_ % 2 == 0;  // the other hand in the next frame
-  for (Sight& sight : sights_)
-    if (const auto region = sight.who->body.hand_region(*sight.frame, *sight.seen, left)) {
-      sight.hands[left ? 0 : 1] = looks_.size();
-      looks_.push_back({sight.frame->picture, *region});
-    }
+  const bool turn = frame_ % 2 == 0;
+  for (const bool left : {true, false}) {
+    if (left != turn && !has_fingers()) continue;  // the other hand in the next frame
+    for (Sight& sight : sights_)
+      if (const auto region = sight.who->body.hand_region(*sight.frame, *sight.seen, left)) {
+        sight.hands[left ? 0 : 1] = looks_.size();
+        looks_.push_back({sight.frame->picture, *region});
+      }
+  }
   hands_.resize(looks_.size());
   detector_->hands(looks_, hands_);
 }
 
 std::span<const Person> BodyTracker::track(const Frame& frame) {
   DUO_CHECK(finder_ != nullptr);
-  const body::FrameView view{{frame.disparity.d_q4, &setup_.rectified}, frame.color, setup_.frame_s, setup_.body_model, {}};
+  const View<const Rgb8> picture = margin_.fill(frame.color);
+  const body::FrameView view{{frame.disparity.d_q4, &setup_.rectified}, picture, setup_.frame_s, setup_.body_model, {}};
   uncover(view);
   look_elsewhere(view);
-  const std::span<const SeenPerson> seen = finder_->follow(frame.color, regions_);
+  const std::span<const SeenPerson> seen = finder_->follow(picture, regions_);
   match(view, seen);
   for (std::size_t i = 0; i < seen.size() && tracked_.size() < kMostPeople; ++i) {
     if (owners_[i] != nullptr || is_of_another(view, seen, i)) continue;
@@ -275,9 +291,13 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
       if (sight.hands[s]) hands.seen[s] = &hands_[*sight.hands[s]];
     sight.who->body.track(*sight.frame, *sight.seen, hands, nearer_);
     nearer_.push_back(&sight.who->body.places());
+    track_fingers(*sight.who, sight.frame->depth, hands);
   }
   for (Tracked& each : tracked_)
-    if (std::ranges::none_of(sights_, [&](const Sight& sight) { return sight.who == &each; })) each.body.miss(each.covered);
+    if (std::ranges::none_of(sights_, [&](const Sight& sight) { return sight.who == &each; })) {
+      each.body.miss(each.covered);
+      track_fingers(each, view.depth, {});
+    }
   forget();
   publish(view);
   ++frame_;
@@ -296,14 +316,24 @@ void BodyTracker::forget() {
   });
 }
 
+void BodyTracker::track_fingers(Tracked& who, const body::DepthView& depth, const Body::Hands& hands) {
+  if (!has_fingers()) return;
+  for (const bool left : {true, false}) {
+    const std::size_t side = left ? 0 : 1;
+    who.fingers[side].track(depth, who.body.shows_hand(left) ? hands.seen[side] : nullptr, who.body.places());
+  }
+}
+
 void BodyTracker::publish(const body::FrameView& frame) {
   people_.clear();
   const Mat3 left_from_rig = transposed(setup_.rectified.rig_from_left);
   for (const Tracked& each : tracked_) {
     Person& person = people_.emplace_back();
     person.id = each.id;
-    person.skeleton = &kBody;
+    person.skeleton = skeletons_[0];
     each.body.publish(frame, person);
+    if (has_fingers())
+      for (const Fingers& fingers : each.fingers) fingers.publish(person);
     for (std::size_t j = 0; j < person.count(); ++j) {
       Joint& joint = person.joints[j];
       if (const auto pixel = lens_->pixel_of(left_from_rig * joint.p_in_rig_m)) {
@@ -317,6 +347,7 @@ void BodyTracker::publish(const body::FrameView& frame) {
 
 }  // namespace
 
-std::unique_ptr<Tracker> make_body_tracker() { return std::make_unique<BodyTracker>(); }
+std::unique_ptr<Tracker> make_body_tracker() { return std::make_unique<BodyTracker>("body", kBody); }
+std::unique_ptr<Tracker> make_body_hands_tracker() { return std::make_unique<BodyTracker>("body_hands", kBodyHands); }
 
 }  // namespace duo

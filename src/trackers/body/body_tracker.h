@@ -1,4 +1,4 @@
-// The tracker "body": whole people, found by themselves.
+// The trackers "body" and "body_hands": whole people, found by themselves.
 #pragma once
 
 #include <memory>
@@ -9,5 +9,7 @@ namespace duo {
 
 /// Follows up to eight people by the networks of the detectors and the depth of the pair.
 std::unique_ptr<Tracker> make_body_tracker();
+/// The same with their fingers: the network of hands is asked for both hands in each frame, not in turn.
+std::unique_ptr<Tracker> make_body_hands_tracker();
 
 }  // namespace duo

@@ -91,15 +91,28 @@ TEST(BodyTracker, FindsARenderedPersonByItself) {
     EXPECT_EQ(people[0].skeleton, &kBody);
     if (i < kFrames / 2) continue;
     for (const SyntheticJoint& truth : person.joints[static_cast<std::size_t>(i)]) {
+      if (is_finger(truth.id) || !truth.visible_left || !truth.visible_right) continue;
       const Joint* joint = people[0].find(truth.id);
       ASSERT_NE(joint, nullptr);
-      if (!truth.visible_left || !truth.visible_right) continue;
       const double off_m = norm(joint->p_in_rig_m - person.rectified.rig_from_left * truth.p_in_left_m);
       worst_m = std::max(worst_m, off_m);
       EXPECT_LT(off_m, 0.16) << name_of(truth.id) << " in frame " << i;
     }
   }
   EXPECT_GT(worst_m, 0);
+}
+
+/// Hands of 26 px are too small for their network.
+TEST(BodyTracker, FingersOfSmallHandsAreLost) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = make_body_hands_tracker();
+  ASSERT_TRUE(tracker->prepare({.rig = person.rig, .rectified = person.rectified, .body_model = BodyModel::kLite}));
+  for (const auto& frame : person.frames) tracker->track(*frame);
+  const long before = test::allocations;
+  const auto people = tracker->track(*person.frames[0]);
+  EXPECT_EQ(test::allocations - before, 0);
+  ASSERT_TRUE(people.size() == 1 && people[0].skeleton == &kBodyHands);
+  for (std::size_t j = kBodyJointIds; j < kJointIds; ++j) EXPECT_EQ(people[0].joints[j].state, JointState::kLost) << j;
 }
 
 TEST(BodyTracker, OneAndTwoThreadsGiveTheSameBits) {

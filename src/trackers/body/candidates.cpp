@@ -41,10 +41,7 @@ double inside_trunk_score(const Scene& scene, JointId id, Vec3 p) {
 double hidden_score(const Scene& scene, JointId id) {
   double score = kHidden;
   score += kHiddenButVisible * share_of(scene.points[id].visibility, 0.6, 0.95);
-  const bool left = is_left(id);
-  const bool of_hand =
-      id == JointId::kLeftHand || id == JointId::kRightHand || id == JointId::kLeftWrist || id == JointId::kRightWrist;
-  if (of_hand && scene.hands[left ? 0 : 1] == HandSight::kSeen) score += kHiddenButHandSeen;
+  if (is_hand_or_wrist(id) && scene.hands[is_left(id) ? 0 : 1] == HandSight::kSeen) score += kHiddenButHandSeen;
   return score;
 }
 

@@ -194,10 +194,10 @@ Places with_lengths(const Places& places, const Lengths& lengths) {
   Places out = places;
   const Vec3 chest = middle(places[kLeftShoulder], places[kRightShoulder]),
              pelvis = middle(places[kLeftHip], places[kRightHip]);
-  const Vec3 up = chest - pelvis, longer = (0.5 * (lengths[Bone::kTrunk] / std::max(norm(up), 1e-6) - 1)) * up;
+  const Vec3 up = chest - pelvis, longer = (0.5 * (lengths.kept(Bone::kTrunk) / std::max(norm(up), 1e-6) - 1)) * up;
   const auto widen = [&](JointId left, JointId right, Bone bone, Vec3 centre) {
     const Vec3 across = places[left] - places[right];
-    const Vec3 half = (0.5 * lengths[bone] / std::max(norm(across), 1e-6)) * across;
+    const Vec3 half = (0.5 * lengths.kept(bone) / std::max(norm(across), 1e-6)) * across;
     out[left] = centre + half;
     out[right] = centre - half;
   };
@@ -206,14 +206,14 @@ Places with_lengths(const Places& places, const Lengths& lengths) {
   const auto follow = [&](const Limb& limb, const std::array<Bone, 3>& bones) {
     for (std::size_t n = 0; n < bones.size(); ++n) {
       const Vec3 way = places[limb[n + 1]] - places[limb[n]];
-      out[limb[n + 1]] = out[limb[n]] + (lengths[bones[n]] / std::max(norm(way), 1e-6)) * way;
+      out[limb[n + 1]] = out[limb[n]] + (lengths.kept(bones[n]) / std::max(norm(way), 1e-6)) * way;
     }
   };
   for (const Limb& arm : kArmChains) follow(arm, {Bone::kUpperArm, Bone::kForearm, Bone::kPalm});
   for (const Limb& leg : kLegChains) follow(leg, {Bone::kThigh, Bone::kShin, Bone::kFoot});
   complete(out);
   const Vec3 head = out[kHead] - out[kNeck];
-  out[kHead] = out[kNeck] + (lengths[Bone::kHead] / std::max(norm(head), 1e-6)) * head;
+  out[kHead] = out[kNeck] + (lengths.kept(Bone::kHead) / std::max(norm(head), 1e-6)) * head;
   return out;
 }
 

@@ -12,7 +12,7 @@
 
 namespace duo::body {
 
-inline constexpr std::size_t kJoints = kJointIds;
+inline constexpr std::size_t kJoints = kBodyJointIds;
 inline constexpr std::size_t index_of(JointId id) { return static_cast<std::size_t>(id); }
 
 /// A value per joint, by JointId.
@@ -50,6 +50,9 @@ constexpr bool is_shoulder(JointId id) { return id == JointId::kLeftShoulder || 
 /// Elbow, wrist or hand.
 constexpr bool is_arm(JointId id) {
   return (id >= JointId::kLeftElbow && id <= JointId::kLeftHand) || (id >= JointId::kRightElbow && id <= JointId::kRightHand);
+}
+constexpr bool is_hand_or_wrist(JointId id) {
+  return id == JointId::kLeftWrist || id == JointId::kLeftHand || id == JointId::kRightWrist || id == JointId::kRightHand;
 }
 /// Of the trunk or the head: no limb carries it.
 constexpr bool is_root(JointId id) {

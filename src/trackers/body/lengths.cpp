@@ -12,13 +12,14 @@ constexpr double kMost = 0.15;        // share by which a length may differ from
 constexpr double kPriorWeight = 6;    // samples that the prior counts as
 constexpr double kPriorSigma = 0.08;  // share
 constexpr double kLeastSigma_m = 0.004;
+constexpr double kLearnt = 50, kWrong_m = 0.008;  // samples of weight 1; of limbs each frame gives two
 
 }  // namespace
 
 Lengths::Lengths() : Lengths(1) {}
 
 Lengths::Lengths(double scale) {
-  for (std::size_t b = 0; b < kBones; ++b) prior_m_[b] = length_m_[b] = scale * kAdult_m[b];
+  for (std::size_t b = 0; b < kBones; ++b) prior_m_[b] = length_m_[b] = kept_m_[b] = scale * kAdult_m[b];
 }
 
 double Lengths::sigma_m(Bone bone) const {
@@ -50,6 +51,7 @@ void Lengths::learn(Bone bone, double measured_m, double weight) {
   const double learnt = s.length_m[order[at]];
   const double mixed = (s.total * learnt + kPriorWeight * prior) / (s.total + kPriorWeight);
   length_m_[b] = std::clamp(mixed, (1 - kMost) * prior, (1 + kMost) * prior);
+  if (s.total < kLearnt || std::abs(length_m_[b] - kept_m_[b]) > kWrong_m) kept_m_[b] = length_m_[b];
 }
 
 }  // namespace duo::body

@@ -34,6 +34,9 @@ class Lengths {
   explicit Lengths(double scale);
 
   double operator[](Bone bone) const { return length_m_[static_cast<std::size_t>(bone)]; }
+  /// The same, but kept once it was learnt for a second, until it turns out to be wrong by more than 8 mm: bones that are
+  /// published do not breathe.
+  double kept(Bone bone) const { return kept_m_[static_cast<std::size_t>(bone)]; }
   /// How well it is known: one standard deviation.
   double sigma_m(Bone bone) const;
   /// One measurement with a weight of 0 .. 1.
@@ -46,7 +49,7 @@ class Lengths {
     std::size_t count = 0, next = 0;
     double total = 0;
   };
-  std::array<double, kBones> prior_m_, length_m_;
+  std::array<double, kBones> prior_m_, length_m_, kept_m_;
   std::array<Samples, kBones> samples_ = {};
 };
 
