@@ -210,10 +210,9 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     const Vec2 at = frame.depth.geometry->project(p);
     const Point& point = scene.points[id];
     const std::size_t side = is_left(id) ? 0 : 1;
-    const Limb& arm = kArmChains[side];
     const bool hidden_by_arm =
-        (id == arm[2] || id == arm[3]) && scene.hands[side] != HandSight::kSeen && is_end_on(fitted_.places, arm, lengths_);
-    state.seen = !hidden_by_arm && chosen[id].on_surface && point.inside && std::abs(p.z - chosen[id].p.z) < kFar_off_m &&
+        is_hand_or_wrist(id) && scene.hands[side] != HandSight::kSeen && is_end_on(fitted_.places, kArmChains[side], lengths_);
+    state.seen = chosen[id].on_surface && point.inside && std::abs(p.z - chosen[id].p.z) < kFar_off_m &&
                  length(at, point.at_px) < std::max(kFar_off_px * point.sigma_px, kTooFar_m * frame.depth.px_per_m(p.z));
     inside += point.inside;
     seen += state.seen;
@@ -221,7 +220,7 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     // After a gap one sight may be a mistake, and more of a hand or wrist that the network of hands does not see.
     const bool sure = !is_hand_or_wrist(id) || scene.hands[side] == HandSight::kSeen;
     state.shown = state.seen ? state.shown + 1 : 0;
-    state.sure = state.seen && (state.sure || state.shown >= (sure ? kSights : kUnsureSights) || age_ == 1);
+    state.sure = state.seen && !hidden_by_arm && (state.sure || state.shown >= (sure ? kSights : kUnsureSights) || age_ == 1);
     state.hidden = state.seen ? 0 : state.hidden + 1;
     const Vec3 off = p - scene.expected[id].p;
     // What the network guesses of a hidden limb tells nothing of its speed.

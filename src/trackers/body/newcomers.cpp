@@ -25,10 +25,10 @@ bool fits(const FrameView& frame, const TrunkCorners& corners, const Upright& up
 }
 
 /// Comes to rest on somebody whose trunk is where something upright is.
-std::optional<TurnedSquare> settle(Detector& detector, const FrameView& frame, const Upright& upright) {
+std::optional<TurnedSquare> settle(Detector& detector, const FrameView& frame, const Upright& upright, double above_m) {
   constexpr int kLooks = 3;
   constexpr std::uint16_t kPerhaps = 9830, kSure = 21299;  // 0.3 and 0.65
-  TurnedSquare region = region_of(frame.depth, upright);
+  TurnedSquare region = region_of(frame.depth, upright, above_m);
   SeenBody seen;
   for (int i = 0; i < kLooks; ++i) {
     const Look look = {frame.picture, region};
@@ -60,7 +60,11 @@ std::optional<TurnedSquare> Newcomers::look(Detector& detector, const FrameView&
     const Vec3 at = frame.depth.geometry->unproject({box.x + box.width / 2.0, box.y + box.height / 2.0}, upright.z_m);
     const auto is_near = [&](Vec3 other) { return across_floor(at, other) < kSame_m; };
     if (std::ranges::any_of(tracked, is_near) || was_refused(at)) continue;
-    const auto found = settle(detector, frame, upright);
+    // Of whom the upper border cuts nobody knows how much is out: the head, the hair, or the shoulders as well.
+    constexpr std::array kAbove_m = {0.32, 0.1, 0.5};
+    std::optional<TurnedSquare> found;
+    for (std::size_t i = 0; i < (upright.cut_above ? kAbove_m.size() : 1) && !found; ++i)
+      found = settle(detector, frame, upright, upright.cut_above ? kAbove_m[i] : 0);
     if (!found) refuse(at);
     return found;
   }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSameRun_m = 0.25, kSameBlob_m = 0.2, kNoise_px = 1;
 
-bool known(std::uint16_t q4) { return q4 != Disparity::kNone && q4 != 0; }
+bool has_depth(std::uint16_t q4) { return q4 != Disparity::kNone && q4 != 0; }
 
 /// Median depth of nine places in a square; 0 where fewer than five are known.
 double cell_depth(const DepthView& depth, int x0, int y0, int side) {
@@ -20,7 +20,7 @@ double cell_depth(const DepthView& depth, int x0, int y0, int side) {
     for (int i = 0; i < 3; ++i) {
       const int x = x0 + (2 * i + 1) * side / 6, y = y0 + (2 * j + 1) * side / 6;
       if (x >= depth.d_q4.width() || y >= depth.d_q4.height()) continue;
-      if (const std::uint16_t q4 = depth.d_q4.at(y, x); known(q4)) found[count++] = depth.z_m(q4);
+      if (const std::uint16_t q4 = depth.d_q4.at(y, x); has_depth(q4)) found[count++] = depth.z_m(q4);
     }
   return count < 5 ? 0 : median(std::span(found.data(), count));
 }
@@ -122,14 +122,12 @@ std::span<const Upright> Uprights::find(const DepthView& depth) {
 }
 
 // The network looks at a square around the hips' middle, a quarter larger than the whole body.
-TurnedSquare region_of(const DepthView& depth, const Upright& upright) {
-  constexpr double kHalf_m = 1.1, kHipsBelowHead_m = 0.82, kHipsBelowShoulders_m = 0.5;
+TurnedSquare region_of(const DepthView& depth, const Upright& upright, double above_m) {
+  constexpr double kHalf_m = 1.1, kHipsBelowHead_m = 0.82;
   const double px_per_m = depth.px_per_m(upright.z_m);
   const Window& box = upright.box_px;
-  // Of who reaches over the upper border, the shoulders are about where the picture begins.
-  const double below_m = upright.cut_above ? kHipsBelowShoulders_m : kHipsBelowHead_m;
   const auto q8 = [](double px) { return static_cast<std::int32_t>(std::lround(256 * px)); };
-  return {q8(box.x + box.width / 2.0), q8(box.y + below_m * px_per_m), q8(kHalf_m * px_per_m), 0};
+  return {q8(box.x + box.width / 2.0), q8(box.y + (kHipsBelowHead_m - above_m) * px_per_m), q8(kHalf_m * px_per_m), 0};
 }
 
 }  // namespace duo::body

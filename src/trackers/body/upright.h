@@ -58,7 +58,8 @@ class Uprights {
   std::array<Upright, kMost> found_;
 };
 
-/// Where the network of bodies would look for a person that stands there.
-TurnedSquare region_of(const DepthView& depth, const Upright& upright);
+/// Where the network of bodies would look for a person that stands there. `above_m`: how much of whom the upper border cuts is
+/// out of the picture; of others none.
+TurnedSquare region_of(const DepthView& depth, const Upright& upright, double above_m);
 
 }  // namespace duo::body
