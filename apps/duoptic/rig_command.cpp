@@ -32,7 +32,8 @@ constexpr char kRefineFooter[] =
 constexpr char kImportFooter[] =
     "Reads our JSON; OpenCV's YAML, JSON and XML, in one file or as intrinsics and extrinsics; Kalibr's camchain\n"
     "(pinhole-radtan); ROS camera_info as one YAML with both cameras, a folder with left.yaml and right.yaml, or two files;\n"
-    "Middlebury's calib.txt; KITTI's calib_cam_to_cam.txt and calib.txt (the rectified colour pair); ZED's SN*.conf.\n\n"
+    "Middlebury's calib.txt; KITTI's calib_cam_to_cam.txt and calib.txt (the rectified pair, in colour where it is there); "
+    "ZED's SN*.conf.\n\n"
     "Examples:\n"
     "  duoptic rig import camchain.yaml -o rig.json\n"
     "  duoptic rig import left.yaml right.yaml -o rig.json\n"
@@ -133,6 +134,7 @@ Result<Exit> import_file(const Options& options, const CLI::App& app) {
   else if (prints)
     fmt::print("{}: {}\n", options.output, describe(read.rig));
   if (!read.note.empty()) say(app, "note: " + read.note);
+  for (const RigDoubt& doubt : rig_doubts(read.rig)) say(app, "warning: " + doubt.what);
   return Exit::kOk;
 }
 

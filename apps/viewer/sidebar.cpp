@@ -25,6 +25,12 @@ ImU32 color_of_verdict(RigVerdict verdict) {
   return verdict == RigVerdict::kGood ? kBox : verdict == RigVerdict::kCanBeImproved ? kWarn : kBad;
 }
 
+/// What is wrong, above all that may lie below the window's end.
+void put_trouble(const PlayerStatus& status) {
+  if (!status.problem.empty()) put_text(kBad, status.problem);
+  if (!status.rig_news.empty()) put_text(kBad, status.rig_news);
+}
+
 const char* word_of(JointState state) {
   return state == JointState::kSeen ? "seen" : state == JointState::kInferred ? "inferred" : "lost";
 }
@@ -82,7 +88,7 @@ void Sidebar::put_clicks(Player& player, Clicks& clicks, const Shown* shown, con
                                        : people == 1 ? "1 person"
                                                      : fmt::format("{} people", people));
     ImGui::PopFont();
-    if (!status.problem.empty()) put_text(kBad, status.problem);
+    put_trouble(status);
     if (ImGui::Button("Look again", {-1, 0})) player.forget_people();
     return;
   }
@@ -94,7 +100,7 @@ void Sidebar::put_clicks(Player& player, Clicks& clicks, const Shown* shown, con
            : tracking      ? "Tracking"
                            : "Nobody is selected");
   ImGui::PopFont();
-  if (!status.problem.empty()) put_text(kBad, status.problem);
+  put_trouble(status);
   for (std::size_t i = 0; i < clicks.choices().size(); ++i) {
     if (i > 0) ImGui::SameLine();
     if (ImGui::RadioButton(clicks.choices()[i].c_str(), clicks.choice() == i)) clicks.start(i);
@@ -378,7 +384,6 @@ void Sidebar::put_source(Player& player, const PlayerStatus& status) const {
   put_fact("engine", header.engine);
   put_fact("window", device_);
   for (const RigDoubt& doubt : doubts_) put_text(color_of_verdict(doubt.verdict), doubt.what);
-  if (!status.rig_news.empty()) put_text(kBad, status.rig_news);
   if (status.checking_rig)
     ImGui::TextDisabled("looking at the pictures ...");
   else if (ImGui::Button("Does the rig fit this scene?", {-1, 0}))

@@ -36,7 +36,7 @@ class Source {
   /// Live: pictures that were lost on the way or that nobody took in time; any thread may ask.
   virtual std::int64_t dropped() const { return 0; }
   /// Live: what there is to say of the camera now (away since when, back again, cannot be locked); any thread may ask. Of a
-  /// file: how many of its pictures were damaged and left out so far.
+  /// file: how many of its pictures were damaged and left out so far, and that it is interlaced.
   virtual std::string warning() const { return {}; }
   /// Fills `into` with the next picture; its memory is used again when it already has the right size.
   virtual Result<Next> next(Picture& into) = 0;
@@ -65,7 +65,7 @@ inline constexpr std::int64_t kMostPixels = std::int64_t{1} << 26;  // 8192 x 81
 
 /// Opens a picture (PNG, JPEG, … one picture), a video file (JPEGs one after the other are one, too), a camera (camera:0,
 /// /dev/video0, camera:BUS_PATH) or a stream (http://, https://, rtsp://, gst:PIPELINE). Pictures come upright, as EXIF's
-/// orientation and a video's display matrix ask; of 16 bits of gray the eight highest that are used.
+/// orientation and a video's display matrix ask; of 16 bits the eight highest that are used.
 ///
 /// Errors  missing, empty, not a picture or video, unreadable at its start, too many pixels; a camera that cannot be opened,
 /// that does not give
@@ -108,7 +108,7 @@ class PairSource {
 /// not said.
 ///
 /// Videos pair by their times, as cameras do: each picture with the nearest of the other camera within half the time from one
-/// picture to the next. Two pictures of 10 to 16 bits of gray are scaled alike.
+/// picture to the next. Two pictures of 10 to 16 bits are scaled alike.
 ///
 /// Errors  those of open_source(); a recording's rig that cannot be one; sizes differ; a picture and a video, a file and a live
 ///         source, one camera twice; a layout, or a skew, for what has none; halves of odd size. From next(): halves that have

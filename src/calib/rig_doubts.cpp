@@ -74,6 +74,12 @@ void doubt_pose(const Rig& rig, Doubts& doubts) {
     doubts.add(RigVerdict::kRecalibrate, "no common view: {}", geometry.error().what);
   else if (apart_deg > 20)
     doubts.add(RigVerdict::kCanBeImproved, "the axes are {:.0f} degrees apart; turn the cameras the same way", apart_deg);
+  constexpr double kFarApart_m = 1;
+  if (rig.metric && rig.baseline_m() > kFarApart_m)
+    doubts.add(
+        RigVerdict::kCanBeImproved,
+        "the cameras would be {:.2f} m apart: is the translation in squares of the board, or in another unit than metres?",
+        rig.baseline_m());
   if (const Vec3 along = normalized(pose.t_m); std::abs(along.y) > 0.35 || std::abs(along.z) > 0.35)
     doubts.add(RigVerdict::kCanBeImproved, "one camera stands {:.0f} degrees above or before the other; mount them in a row",
                std::asin(std::max(std::abs(along.y), std::abs(along.z))) * kDeg);

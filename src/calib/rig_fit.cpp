@@ -15,6 +15,7 @@ namespace duo {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kLeastPan_rad = 0.6 / kDegrees;  // that is to be found
 
 RigFit misfit(std::string what) { return {RigVerdict::kRecalibrate, std::move(what)}; }
 
@@ -132,15 +133,39 @@ RigFit judged(const Rig& rig, const Evidence& evidence) {
   const auto health = judge_scene(rig, evidence);
   if (!health) return misfit(health.error().what);
   RigFit fit{health->verdict, {}, *health};
-  // A few pairs are looked at in every run: what they may say by chance is not said.
+  // A few pairs are looked at in every run: what they may say by chance is not said. Where they could not tell the least pan
+  // that is to be found, they must be sure of a larger one.
   constexpr double kToldPan_sigmas = 3;
-  if (fit.verdict == RigVerdict::kCanBeImproved && health->row_px < kGoodRow_px &&
-      health->pan_px < kToldPan_sigmas * health->pan_sigma_px)
-    fit.verdict = RigVerdict::kGood;
+  const bool could_tell = health->turned_sigma_rad.y <= kLeastPan_rad / kToldPan_sigmas;
+  const bool told = sure_of_pan(*health) || (could_tell && health->pan_px >= kToldPan_sigmas * health->pan_sigma_px);
+  if (fit.verdict == RigVerdict::kCanBeImproved && health->row_px < kGoodRow_px && !told) fit.verdict = RigVerdict::kGood;
   if (fit.verdict == RigVerdict::kGood) return rig.metric ? fit : not_metric(std::move(fit));
   fit.what = misfit_text(*health);
   fit.disparity_sigma_px = std::hypot(health->row_px, health->pan_px > 2 * health->pan_sigma_px ? health->pan_px : 0);
   return fit;
+}
+
+/// Whether what was seen says that all is right, so that no more need be looked at.
+bool surely_good(const std::optional<Rig>& rig, const RigFit& fit) {
+  constexpr double kSurelyRight_px = 0.15, kSurely_sigmas = 3;
+  if (!rig) return fit.what.empty();
+  if (fit.verdict != RigVerdict::kGood || !fit.scene) return false;
+  const double most_rad = std::abs(fit.scene->turned_rad.y) + kSurely_sigmas * fit.scene->turned_sigma_rad.y;
+  return fit.scene->row_px < kSurelyRight_px && most_rad < kLeastPan_rad;
+}
+
+/// What points say; none: too few agree.
+std::optional<RigFit> fit_by(const std::optional<Rig>& rig, const Rig& lenses, const SceneMatches& scene,
+                             const RigFit& untold) {
+  if (one_picture(scene.matches)) return misfit("left and right are the same picture; give one of each camera");
+  const auto matches = agreeing_matches(lenses, scene);
+  if (!matches) return {};
+  if (!rig) {
+    std::string why = why_not_rectified(*matches);
+    return why.empty() ? untold : misfit(std::move(why));
+  }
+  const auto evidence = evidence_of(scene, *matches);
+  return evidence ? judged(*rig, *evidence) : untold;
 }
 
 }  // namespace
@@ -151,19 +176,16 @@ RigFit rig_fit(const std::optional<Rig>& rig, std::span<const std::shared_ptr<co
     for (const RigDoubt& doubt : rig_doubts(*rig))
       if (doubt.verdict == RigVerdict::kRecalibrate) return misfit(fmt::format("the rig is of no use: {}", doubt.what));
   const RigFit untold = rig && !rig->metric ? not_metric({}) : RigFit();
-  const Pair& last = *pairs.back();
-  const Size size = last.left.pixels.size();
+  const Size size = pairs[0]->left.pixels.size();
   const Rig lenses = rig ? *rig : guessed_rig(size);
   if (!(lenses.left.size == size)) return untold;  // the engine refuses it
-  const SceneMatches scene = match_pairs(pairs, threads);
-  if (one_picture(scene.matches)) return misfit("left and right are the same picture; give one of each camera");
-  const auto matches = agreeing_matches(lenses, scene);
-  if (!matches || !rig) {
-    std::string why = matches ? why_not_rectified(*matches) : why_apart(lenses, scene, last, threads);
-    return why.empty() ? untold : misfit(std::move(why));
-  }
-  const auto evidence = evidence_of(scene, *matches);
-  return evidence ? judged(*rig, *evidence) : untold;
+  const auto quick = fit_by(rig, lenses, match_pair(*pairs[0], threads, SceneSearch::kQuick), untold);
+  if (quick && surely_good(rig, *quick)) return *quick;
+  SceneMatcher matcher(size, threads);
+  for (const auto& pair : pairs) matcher.add(*pair);
+  if (auto fit = fit_by(rig, lenses, matcher.matches(), untold)) return *fit;
+  std::string why = why_apart(lenses, matcher.matches(), *pairs.back(), threads);
+  return why.empty() ? untold : misfit(std::move(why));
 }
 
 }  // namespace duo

@@ -114,6 +114,19 @@ TEST(RigFit, TheRightRigIsNotDoubted) {
   }
 }
 
+/// Beyond doubt by one pair; what is wrong is looked at in all.
+TEST(RigFit, OnePairIsEnoughWhereAllIsRight) {
+  PairList pairs = pairs_of(1);
+  pairs.resize(3, pairs[0]);
+  const RigFit fit = rig_fit(fit_room(1).rig, pairs, 2);
+  expect_good(fit);
+  ASSERT_TRUE(fit.scene);
+  EXPECT_EQ(fit.scene->pairs, 1);
+  const RigFit turned = rig_fit(right_turned(fit_room(1).rig, turn(0, 0.6, 0)), pairs, 2);
+  ASSERT_TRUE(turned.scene);
+  EXPECT_EQ(turned.scene->pairs, 3);
+}
+
 TEST(RigFit, ATurnedCameraAndAnotherRigAreTold) {
   for (const std::uint32_t seed : {1u, 2u})
     for (const Mat3& by : {turn(0, 0.6, 0), turn(0, -0.6, 0), turn(0.3, 0, 0), turn(-0.3, 0, 0)}) {

@@ -183,6 +183,7 @@ TEST(RigDoubts, NamesWhatNoWebcamHas) {
   expect_doubt([](Rig& r) { r.right_from_left.rotation = turn(0, 80, 0); }, RigVerdict::kRecalibrate, "no common view");
   expect_doubt([](Rig& r) { r.right_from_left.rotation = turn(0, 25, 0); }, RigVerdict::kCanBeImproved, "25 degrees apart");
   expect_doubt([](Rig& r) { r.right_from_left.t_m = {-0.1, 0.05, 0}; }, RigVerdict::kCanBeImproved, "above or before");
+  expect_doubt([](Rig& r) { r.right_from_left.t_m = {-4.8, 0.05, 0}; }, RigVerdict::kCanBeImproved, "in squares of the board");
   expect_doubt([](Rig& r) { r.reprojection_rms_px = 0.9; }, RigVerdict::kCanBeImproved, "fitted to 0.90 px");
   expect_doubt([](Rig& r) { r.reprojection_rms_px = 2.3; }, RigVerdict::kRecalibrate, "fitted to 2.30 px");
 }

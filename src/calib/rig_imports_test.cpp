@@ -142,6 +142,34 @@ TEST(RigImports, ReadsIntrinsicsAndExtrinsics) {
   }
 }
 
+// As tutorials name them, and as MATLAB exports them.
+TEST(RigImports, ReadsOtherNamesOfCameraMatrices) {
+  const std::string good = kOpencv;
+  const auto renamed = [&](const char* m1, const char* d1, const char* m2, const char* d2) {
+    return replaced(replaced(replaced(replaced(good, "M1:", m1), "D1:", d1), "M2:", m2), "D2:", d2);
+  };
+  for (const std::string& text : {renamed("K1:", "D1:", "K2:", "D2:"), renamed("mtxL:", "distL:", "mtxR:", "distR:"),
+                                  renamed("K_left:", "D_left:", "K_right:", "D_right:")}) {
+    const auto rig = parse_rig(text, "opencv");
+    ASSERT_TRUE(rig) << rig.error().what << text;
+    expect_the_rig(*rig);
+  }
+  expect_refused(renamed("A:", "B:", "C:", "D:"), "has a pose, but no camera matrices");
+  expect_refused(
+      R"({"image_size": [640, 480], "M1": [[560,0,0],[0,561,0],[323,236,1]], "D1": [0,0,0,0,0], "M2": [[560,0,0],[0,561,0],[323,236,1]],
+          "D2": [0,0,0,0,0], "R": [[1,0,0],[0,1,0],[0,0,1]], "T": [-0.12,0,0]})",
+      "as MATLAB writes it: transpose it");
+}
+
+TEST(RigImports, TextsOfOtherProgramsAreNotCalledBroken) {
+  expect_refused(
+      "Calibration results\n====================\nCamera-system parameters:\ncam0 (/cam0/image_raw):\n    type: <class>\n",
+      "no rig file of a known kind");
+  expect_refused("Extrinsic from \"Infrared 1\" To \"Infrared 2\":\n Rotation Matrix:\n 1 0 0\n Translation Vector: 0 0\n",
+                 "no rig file of a known kind");
+  expect_refused("cam0:\n  intrinsics: [1, 2\n", "broken or cut short");
+}
+
 constexpr char kRos[] = R"(height: 480
 width: 640
 distortion_model: plumb_bob
@@ -162,6 +190,15 @@ TEST(RigImports, ReadsRosMessagesOfRectifiedPictures) {
   expect_refused(left + "---\n" + replaced(right, "d: []", "d: [0,0,0,0,0,0,0,0,0,0,0,1]"), "after the eighth");
   expect_refused(left + "---\n" + replaced(right, "plumb_bob", "''").replace(right.find("d: []") - 7, 5, "d: [1, 2, 3, 4, 5]"),
                  "distortion model ''");
+}
+
+TEST(RigImports, RefusesRosMessagesOfPartsOfTheSensor) {
+  const std::string left = kRos, right = replaced(left, "p: [500.0, 0.0, 320.0, 0.0", "p: [500.0, 0.0, 320.0, -50.0");
+  const auto with = [&](const std::string& more) { return left + more + "---\n" + right; };
+  for (const char* whole : {"binning_x: 0\nbinning_y: 0\nroi:\n  x_offset: 0\n  width: 0\n  height: 0\n", "binning_x: 1\n"})
+    EXPECT_TRUE(parse_rig(with(whole), "ros")) << whole;
+  expect_refused(with("binning_x: 2\nbinning_y: 2\n"), "left camera: its pictures are binned");
+  expect_refused(with("roi:\n  x_offset: 100\n  width: 300\n  height: 200\n"), "of a part of the sensor");
 }
 
 TEST(RigImports, ReadsMiddlebury) {
@@ -193,6 +230,11 @@ TEST(RigImports, ReadsKitti) {
     EXPECT_EQ(read->rig.left, (Camera{{1242, 375}, 721.5377, 721.5377, 609.5593, 172.854}));
     EXPECT_NEAR(read->rig.right_from_left.t_m.x, -(44.85728 + 339.5242) / 721.5377, 1e-12);
   }
+  put(folder / "gray.txt", "P0: " + p2 + "P1: " + p3);  // the odometry's gray pictures
+  const auto gray = import_rig(folder / "gray.txt", {}, {1242, 375});
+  ASSERT_TRUE(gray) << gray.error().what;
+  EXPECT_EQ(gray->rig.left_name, "KITTI camera 0");
+  EXPECT_NEAR(gray->rig.right_from_left.t_m.x, -(44.85728 + 339.5242) / 721.5377, 1e-12);
   const auto unsized = load_rig(folder / "calib.txt");
   ASSERT_FALSE(unsized);
   EXPECT_NE(unsized.error().what.find("--size"), std::string::npos) << unsized.error().what;

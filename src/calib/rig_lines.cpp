@@ -97,15 +97,29 @@ Result<Rig> rig_from_middlebury(const Lines& lines, const std::string& name) {
 
 // --- KITTI ----------------------------------------------------------------------------------------------------------------
 
-/// The rectified colour pair, cameras 2 and 3: its pictures are what most downloads hold. calib_cam_to_cam.txt says their size,
-/// the odometry's calib.txt does not.
-Result<Rig> rig_from_kitti(const Lines& lines, const std::string& name, Size size) {
+/// Two projections of a rectified pair, as a file names them.
+struct KittiPair {
+  const char *left, *right, *size;  // size: null where the file does not say it
+  int first;                        // number of the left camera
+};
+constexpr KittiPair kKittiPairs[] = {{"P_rect_02", "P_rect_03", "S_rect_02", 2},
+                                     {"P2", "P3", nullptr, 2},
+                                     {"P_rect_00", "P_rect_01", "S_rect_00", 0},
+                                     {"P0", "P1", nullptr, 0}};
+
+/// The pair in colour, cameras 2 and 3, whose pictures most downloads hold; where the file has the gray pair alone, that one.
+const KittiPair* kitti_pair(const Lines& lines) {
+  const auto* found = std::find_if(std::begin(kKittiPairs), std::end(kKittiPairs),
+                                   [&](const KittiPair& pair) { return lines.contains(pair.left); });
+  return found == std::end(kKittiPairs) ? nullptr : found;
+}
+
+/// calib_cam_to_cam.txt says the size of the pictures, the odometry's calib.txt does not.
+Result<Rig> rig_from_kitti(const Lines& lines, const KittiPair& pair, const std::string& name, Size size) {
   LineReader reader(lines, name);
-  const bool raw = lines.contains("P_rect_02");
-  const std::vector<double> left = reader.numbers(raw ? "P_rect_02" : "P2", 12),
-                            right = reader.numbers(raw ? "P_rect_03" : "P3", 12);
-  if (raw) {
-    const std::vector<double> s = reader.numbers("S_rect_02", 2);
+  const std::vector<double> left = reader.numbers(pair.left, 12), right = reader.numbers(pair.right, 12);
+  if (pair.size != nullptr) {
+    const std::vector<double> s = reader.numbers(pair.size, 2);
     size = {reader.pixels(s[0]), reader.pixels(s[1])};
   }
   if (reader.wrong()) return *reader.wrong();
@@ -114,12 +128,13 @@ Result<Rig> rig_from_kitti(const Lines& lines, const std::string& name, Size siz
                      "KITTI's file does not say how large the pictures are; add their size: duoptic rig import {} --size "
                      "1242x375",
                      name);
-  if (!(left[0] > 0)) return rig_error(name, "the focal length of camera 2 is {} px; give the whole file", left[0]);
+  if (!(left[0] > 0))
+    return rig_error(name, "the focal length of camera {} is {} px; give the whole file", pair.first, left[0]);
   Rig rig;
   rig.left = pinhole(size, left, 4);
   rig.right = pinhole(size, right, 4);
-  rig.left_name = "KITTI camera 2";
-  rig.right_name = "KITTI camera 3";
+  rig.left_name = fmt::format("KITTI camera {}", pair.first);
+  rig.right_name = fmt::format("KITTI camera {}", pair.first + 1);
   rig.right_from_left.t_m.x = (right[3] - left[3]) / left[0];
   return rig;
 }
@@ -184,7 +199,7 @@ Result<Rig> rig_from_zed(const Lines& lines, const std::string& name, Size size)
 
 bool is_rig_of_lines(std::string_view text) {
   if (text.starts_with("%YAML")) return false;  // OpenCV's files have a P2, too
-  constexpr const char* kStarts[] = {"cam0=", "cam0 =", "P_rect_02:", "P2:", "[LEFT_CAM_"};
+  constexpr const char* kStarts[] = {"cam0=", "cam0 =", "P_rect_00:", "P_rect_02:", "P0:", "P2:", "[LEFT_CAM_"};
   return std::any_of(std::begin(kStarts), std::end(kStarts), [&](const char* start) {
     const std::size_t at = text.find(start);
     return at != text.npos && (at == 0 || text[at - 1] == '\n');
@@ -194,7 +209,7 @@ bool is_rig_of_lines(std::string_view text) {
 Result<Rig> rig_from_lines(std::string_view text, const std::string& name, Size size) {
   const Lines lines = lines_of(text);
   if (lines.contains("cam0")) return rig_from_middlebury(lines, name);
-  if (lines.contains("P2") || lines.contains("P_rect_02")) return rig_from_kitti(lines, name, size);
+  if (const KittiPair* pair = kitti_pair(lines)) return rig_from_kitti(lines, *pair, name, size);
   return rig_from_zed(lines, name, size);
 }
 

@@ -22,6 +22,9 @@ constexpr Spelling kSpellings[] = {
     {"cameraMatrix1", "distCoeffs1", "cameraMatrix2", "distCoeffs2"},
     {"M1", "D1", "M2", "D2"},
     {"camera_matrix_left", "dist_coeffs_left", "camera_matrix_right", "dist_coeffs_right"},
+    {"K1", "D1", "K2", "D2"},
+    {"mtxL", "distL", "mtxR", "distR"},
+    {"K_left", "D_left", "K_right", "D_right"},
 };
 
 bool is_known(std::string_view key) {
@@ -168,6 +171,9 @@ Camera read_camera(OpencvReader& reader, const char* matrix_key, const char* dis
   const auto m = reader.take(matrix_key, {9}, "a 3x3 camera matrix is needed");
   const auto d = reader.take(distortion_key, {0, 4, 5, 8, 12, 14}, kCoefficientsAdvice);
   if (m.empty()) return camera;
+  if (m[2] == 0 && m[5] == 0 && m[6] != 0)
+    reader.complain(
+        fmt::format("key '{}' is [fx 0 0; 0 fy 0; cx cy 1], as MATLAB writes it: transpose it, and R too", matrix_key));
   if (m[1] != 0 || m[3] != 0 || m[6] != 0 || m[7] != 0 || m[8] != 1)
     reader.complain(fmt::format("key '{}' is not [fx 0 cx; 0 fy cy; 0 0 1]", matrix_key));
   camera.fx_px = m[0];
@@ -211,9 +217,10 @@ Result<Rig> rig_from_opencv(const OpencvNumbers& numbers, const std::string& nam
   if (spelling == std::end(kSpellings)) {
     if (numbers.contains("R"))
       return rig_error(name,
-                       "it has the pose alone (extrinsics); give the cameras' file, too: duoptic rig import intrinsics.yml "
-                       "extrinsics.yml");
-    return rig_error(name, "it has no camera matrices (cameraMatrix1, M1 or camera_matrix_left); give a stereo calibration");
+                       "it has a pose, but no camera matrices (cameraMatrix1, M1, K1 or camera_matrix_left); if they are in "
+                       "another file: duoptic rig import intrinsics.yml extrinsics.yml");
+    return rig_error(name,
+                     "it has no camera matrices (cameraMatrix1, M1, K1 or camera_matrix_left); give a stereo calibration");
   }
   Rig rig;
   OpencvReader reader(numbers);

@@ -24,6 +24,18 @@ struct CameraInfo {
   std::array<double, 12> projection = {};  // row by row
 };
 
+/// What a message says of pictures that are not the whole sensor's; empty: nothing.
+std::string part_of_sensor(const YAML::Node& map) {
+  const auto number = [](const YAML::Node& node) {
+    double value = 0;
+    return node.IsDefined() && YAML::convert<double>::decode(node, value) ? value : 0;
+  };
+  if (number(map["binning_x"]) > 1 || number(map["binning_y"]) > 1) return "binned";
+  const YAML::Node roi = map["roi"];
+  if (!roi.IsDefined() || !roi.IsMap()) return {};
+  return number(roi["width"]) > 0 || number(roi["height"]) > 0 ? "of a part of the sensor (roi)" : "";
+}
+
 // Files and messages spell their keys differently: camera_matrix, K (ROS 1), k (ROS 2).
 Result<CameraInfo> read(const YAML::Node& map, const char* side, const std::string& name) {
   YamlReader reader(map, fmt::format("{} camera: ", side));
@@ -45,6 +57,9 @@ Result<CameraInfo> read(const YAML::Node& map, const char* side, const std::stri
   if (!reader.wrong().empty()) return rig_error(name, "{}", reader.wrong());
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
     return rig_error(name, "{} camera: the camera matrix is not [fx 0 cx; 0 fy cy; 0 0 1]", side);
+
+  if (const std::string part = part_of_sensor(map); !part.empty())
+    return rig_error(name, "{} camera: its pictures are {}; give a camera_info of whole pictures", side, part);
 
   CameraInfo info;
   info.camera = {.size = {reader.whole("image_width", width[0]), reader.whole("image_height", height[0])},

@@ -27,6 +27,17 @@ std::vector<Document> part(std::string_view text) {
   return out;
 }
 
+Error no_known_kind(const std::string& name) {
+  return rig_error(
+      name, "this is no rig file of a known kind (ours, OpenCV, ROS, Kalibr, Middlebury, KITTI, ZED); give a calibration file");
+}
+
+/// Whether a text that is no YAML was to be a rig: it has a key of one.
+bool names_a_camera(std::string_view text) {
+  constexpr const char* kKeys[] = {"%YAML", "cam0:", "camera_model:", "distortion_model:", "image_width:", "opencv-matrix"};
+  return std::any_of(std::begin(kKeys), std::end(kKeys), [&](const char* key) { return text.find(key) != text.npos; });
+}
+
 /// Nodes that look sound can still throw when they are asked for what they are not.
 template <class Read>
 Result<Rig> guarded(const std::string& name, Read&& read) {
@@ -46,14 +57,13 @@ Result<std::vector<YAML::Node>> yaml_documents(std::string_view text, const std:
       const YAML::Node node = YAML::Load(document.text);
       if (!node.IsNull()) maps.push_back(node);
     } catch (const YAML::Exception& e) {
+      if (!names_a_camera(text)) return no_known_kind(name);
       return rig_error(name, "the YAML is broken or cut short at line {}; write the file again",
                        e.mark.line + document.first_line);
     }
   }
   if (maps.empty() || !std::all_of(maps.begin(), maps.end(), [](const YAML::Node& node) { return node.IsMap(); }))
-    return rig_error(
-        name,
-        "this is no rig file of a known kind (ours, OpenCV, ROS, Kalibr, Middlebury, KITTI, ZED); give a calibration file");
+    return no_known_kind(name);
   return maps;
 }
 

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <vector>
 
+#include "duoptic/rig_fit.h"
 #include "duoptic/rig_health.h"
 #include "tests/data.h"
 #include "tests/turned_rig.h"
@@ -51,6 +53,25 @@ TEST_P(SceneClips, FromSceneRefineAndCheck) {
   EXPECT_LT(true_row_error_px(refined->rig, *truth), 0.5);
   const double pan_px = std::abs(wrong_turn_deg(refined->rig, *truth).y) * kDeg * truth->left.fx_px;
   EXPECT_TRUE(pan_px < 2 || refined->after.verdict != RigVerdict::kGood) << pan_px;
+}
+
+/// A bare room whose light dims: its points make a pan of the right rig likely, and could not tell a small one from none.
+TEST(SceneClip, WhatABareRoomCannotTellIsNotSaid) {
+  const auto folder = data_folder() / "sequences" / "dev_hard_beige";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: no data";
+  const auto rig = load_rig(folder / "calibration_truth.yml");
+  auto source = open_pairs(folder / "left.avi", folder / "right.avi");
+  ASSERT_TRUE(rig && source);
+  std::vector<std::shared_ptr<const Pair>> pairs;
+  for (int i = 0; i < 69; ++i) {
+    auto pair = std::make_shared<Pair>();
+    ASSERT_TRUE((*source)->next(*pair));
+    if (i >= 50 && (i - 50) % 9 == 0) pairs.push_back(std::move(pair));
+  }
+  ASSERT_EQ(pairs.size(), 3u);
+  const RigFit fit = rig_fit(*rig, pairs, 2);
+  EXPECT_EQ(fit.verdict, RigVerdict::kGood) << fit.what;
+  EXPECT_EQ(rig_fit(right_turned(*rig, turn(0.3, 0, 0)), pairs, 2).verdict, RigVerdict::kRecalibrate);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rendered, SceneClips, testing::Values("dev_easy_wave", "dev_hard_beige"));

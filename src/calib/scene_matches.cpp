@@ -4,15 +4,21 @@
 #include <array>
 #include <memory>
 #include <opencv2/imgproc.hpp>
-#include <span>
 
 #include "calib/align_match.h"
 #include "core/pool.h"
 #include "stages/gray/gray.h"
+#include "stages/halve/halve.h"
 #include "stages/match_points/match_points.h"
 #include "stages/sift/sift.h"
 
 namespace duo {
+
+struct SceneCandidate {
+  SceneMatch match;
+  int square_distance;  // of the descriptors
+};
+
 namespace {
 
 constexpr int kPairs = 12;              // looked at in a stream
@@ -22,78 +28,110 @@ constexpr double kSmooth_px = 0.8;      // before patches are compared: noise, a
 constexpr int kRadius_px = 8;           // of a patch
 constexpr int kColumns = 8, kRows = 6;  // cells of the picture
 constexpr int kMostOfACell = 400;       // over all pairs
+constexpr int kFewOfACell = 8;          // of one pair, in a quick search
+constexpr int kQuickWidth = 480;        // of its pictures at most, px
 
-struct Candidate {
-  SceneMatch match;
-  int square_distance;
-};
-
-/// Finds and matches the points of one pair after the other in memory that it keeps.
-class Matcher {
- public:
-  Matcher(Size size, int threads)
-      : pool_(threads),
-        gray_(size),
-        smooth_left_(size),
-        smooth_right_(size),
-        scratch_(size, kPoints),
-        left_(kPoints),
-        right_(kPoints),
-        found_(kPoints) {}
-
-  /// How many points the poorer picture has.
-  int add(const Pair& pair, std::vector<Candidate>& out) {
-    sift(pair.left, left_, smooth_left_);
-    sift(pair.right, right_, smooth_right_);
-    found_.resize(static_cast<std::size_t>(left_.count));
-    simd::match_points(pool_, left_, {}, right_, {.ratio_percent = 75}, found_);
-    for (int i = 0; i < left_.count; ++i) {
-      const PointMatch found = found_[static_cast<std::size_t>(i)];
-      if (found.seen == PointMatch::kNone) continue;
-      const SiftPoint &a = left_[i], &b = right_[found.seen];
-      const Vec2 at = {a.x_px, a.y_px};
-      if (const auto there = align_match(smooth_left_, at, smooth_right_, {b.x_px, b.y_px}, kRadius_px))
-        out.push_back({{at, *there}, found.square_distance});
-    }
-    return std::min(left_.count, right_.count);
-  }
-
- private:
-  void sift(const Picture& picture, SiftPoints& out, Image<float>& smooth) {
-    simd::gray(pool_, picture.pixels, gray_);
-    simd::sift(pool_, gray_, Window::all(gray_.size()), {.contrast = 0.02f}, scratch_, out);
-    const cv::Mat from(gray_.height(), gray_.width(), CV_8U, gray_.row(0), static_cast<std::size_t>(gray_.stride()));
-    cv::Mat to(smooth.height(), smooth.width(), CV_32F, smooth.row(0),
-               sizeof(float) * static_cast<std::size_t>(smooth.stride()));
-    from.convertTo(to, CV_32F);
-    cv::GaussianBlur(to, to, {}, kSmooth_px);
-  }
-
-  Pool pool_;
-  Image<std::uint8_t> gray_;
-  Image<float> smooth_left_, smooth_right_;
-  SiftScratch scratch_;
-  SiftPoints left_, right_;
-  std::vector<PointMatch> found_;
-};
-
-std::vector<SceneMatch> best_of_each_cell(std::vector<Candidate> all, Size size) {
+std::vector<SceneMatch> best_of_each_cell(std::vector<SceneCandidate> all, Size size) {
   std::stable_sort(all.begin(), all.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.square_distance < b.square_distance; });
+                   [](const SceneCandidate& a, const SceneCandidate& b) { return a.square_distance < b.square_distance; });
   std::array<int, kColumns * kRows> counts{};
   std::vector<SceneMatch> out;
-  for (const Candidate& c : all)
+  for (const SceneCandidate& c : all)
     if (++counts[static_cast<std::size_t>(cell_of(c.match.left_px, size, kColumns, kRows))] <= kMostOfACell)
       out.push_back(c.match);
   return out;
 }
 
-void note(int points, SceneMatches& scene) {
-  scene.fewest_points = scene.pairs == 0 ? points : std::min(scene.fewest_points, points);
-  ++scene.pairs;
+/// The best of each cell, so that what is laid over each other lies all over the picture.
+void keep_few(std::vector<SceneCandidate>& candidates, Size size) {
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const SceneCandidate& a, const SceneCandidate& b) { return a.square_distance < b.square_distance; });
+  std::array<int, kColumns * kRows> counts{};
+  std::erase_if(candidates, [&](const SceneCandidate& c) {
+    return ++counts[static_cast<std::size_t>(cell_of(c.match.left_px, size, kColumns, kRows))] > kFewOfACell;
+  });
 }
 
 }  // namespace
+
+struct SceneMatcher::State {
+  State(Size size, int threads, SceneSearch search)
+      : pool(threads),
+        quick(search == SceneSearch::kQuick),
+        gray(size),
+        smooth_left(size),
+        smooth_right(size),
+        scratch(size, kPoints),
+        left(kPoints),
+        right(kPoints),
+        found(kPoints) {
+    scene.size = size;
+    if (!quick) return;
+    for (Size half = size; half.width > kQuickWidth; ++halvings) coarse.emplace_back(half = half_of(half));
+  }
+
+  void find(const Picture& picture, SiftPoints& out, Image<float>& smooth) {
+    simd::gray(pool, picture.pixels, gray);
+    for (int i = 0; i < halvings; ++i) simd::halve(pool, i == 0 ? gray : coarse[i - 1], coarse[i]);
+    const Image<std::uint8_t>& searched = halvings > 0 ? coarse.back() : gray;
+    simd::sift(pool, searched, Window::all(searched.size()), {.contrast = 0.02f}, scratch, out);
+    const cv::Mat from(gray.height(), gray.width(), CV_8U, gray.row(0), static_cast<std::size_t>(gray.stride()));
+    cv::Mat to(smooth.height(), smooth.width(), CV_32F, smooth.row(0),
+               sizeof(float) * static_cast<std::size_t>(smooth.stride()));
+    from.convertTo(to, CV_32F);
+    cv::GaussianBlur(to, to, {}, kSmooth_px);
+  }
+  /// In the whole picture: the centre of a coarse pixel lies between those of its four.
+  Vec2 place_of(const SiftPoint& point) const {
+    const double factor = 1 << halvings, shift = (factor - 1) / 2;
+    return {factor * point.x_px + shift, factor * point.y_px + shift};
+  }
+
+  Pool pool;
+  const bool quick;
+  Image<std::uint8_t> gray;
+  std::vector<Image<std::uint8_t>> coarse;  // each half of the one before
+  int halvings = 0;
+  Image<float> smooth_left, smooth_right;
+  SiftScratch scratch;
+  SiftPoints left, right;
+  std::vector<PointMatch> found;
+  std::vector<SceneCandidate> all;
+  SceneMatches scene;  // but for the matches
+};
+
+SceneMatcher::SceneMatcher(Size size, int threads, SceneSearch search)
+    : state_(std::make_unique<State>(size, threads, search)) {}
+SceneMatcher::~SceneMatcher() = default;
+
+void SceneMatcher::add(const Pair& pair) {
+  State& s = *state_;
+  s.find(pair.left, s.left, s.smooth_left);
+  s.find(pair.right, s.right, s.smooth_right);
+  s.found.resize(static_cast<std::size_t>(s.left.count));
+  simd::match_points(s.pool, s.left, {}, s.right, {.ratio_percent = 75}, s.found);
+  std::vector<SceneCandidate> candidates;
+  for (int i = 0; i < s.left.count; ++i) {
+    const PointMatch found = s.found[static_cast<std::size_t>(i)];
+    if (found.seen != PointMatch::kNone)
+      candidates.push_back({{s.place_of(s.left[i]), s.place_of(s.right[found.seen])}, found.square_distance});
+  }
+  if (s.quick) keep_few(candidates, s.scene.size);
+  for (SceneCandidate& c : candidates)
+    if (const auto there = align_match(s.smooth_left, c.match.left_px, s.smooth_right, c.match.right_px, kRadius_px)) {
+      c.match.right_px = *there;
+      s.all.push_back(c);
+    }
+  const int points = std::min(s.left.count, s.right.count);
+  s.scene.fewest_points = s.scene.pairs == 0 ? points : std::min(s.scene.fewest_points, points);
+  ++s.scene.pairs;
+}
+
+SceneMatches SceneMatcher::matches() const {
+  SceneMatches scene = state_->scene;
+  scene.matches = best_of_each_cell(state_->all, scene.size);
+  return scene;
+}
 
 int cell_of(Vec2 at_px, Size size, int columns, int rows) {
   const int column = std::clamp(static_cast<int>(at_px.x * columns / size.width), 0, columns - 1);
@@ -105,10 +143,8 @@ Result<SceneMatches> match_scene(PairSource& pairs, int threads, std::int64_t fa
   if (pairs.live()) farthest /= 10;
   const std::int64_t count = pairs.count() > 0 ? std::min(pairs.count(), farthest) : farthest;
   const std::int64_t step = std::max<std::int64_t>(1, (count + kPairs - 1) / kPairs);
-  SceneMatches scene;
-  scene.size = pairs.size();
-  Matcher matcher(scene.size, threads);
-  std::vector<Candidate> all;
+  SceneMatcher matcher(pairs.size(), threads);
+  bool cut = false;
   Pair pair;
   int empty = 0;
   for (std::int64_t i = 0; i < count; ++i) {
@@ -116,29 +152,19 @@ Result<SceneMatches> match_scene(PairSource& pairs, int threads, std::int64_t fa
     while (next == Next::kNothing && ++empty < kPatience) {
       DUO_TRY_ASSIGN(next, pairs.next(pair));
     }
-    scene.cut = next == Next::kCut;
+    cut = next == Next::kCut;
     if (next != Next::kNew) break;
-    if (i % step != 0) continue;
-    note(matcher.add(pair, all), scene);
+    if (i % step == 0) matcher.add(pair);
   }
-  scene.matches = best_of_each_cell(std::move(all), scene.size);
+  SceneMatches scene = matcher.matches();
+  scene.cut = cut;
   return scene;
 }
 
-SceneMatches match_pairs(std::span<const std::shared_ptr<const Pair>> pairs, int threads) {
-  SceneMatches scene;
-  if (pairs.empty()) return scene;
-  scene.size = pairs[0]->left.pixels.size();
-  std::vector<Candidate> all;
-  Matcher matcher(scene.size, threads);
-  for (const auto& pair : pairs) note(matcher.add(*pair, all), scene);
-  scene.matches = best_of_each_cell(std::move(all), scene.size);
-  return scene;
-}
-
-SceneMatches match_pair(const Pair& pair, int threads) {
-  const std::shared_ptr<const Pair> one(std::shared_ptr<void>(), &pair);
-  return match_pairs({&one, 1}, threads);
+SceneMatches match_pair(const Pair& pair, int threads, SceneSearch search) {
+  SceneMatcher matcher(pair.left.pixels.size(), threads, search);
+  matcher.add(pair);
+  return matcher.matches();
 }
 
 double covered_share(const std::vector<SceneMatch>& matches, Size size) {

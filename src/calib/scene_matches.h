@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -24,6 +23,26 @@ struct SceneMatches {
   int fewest_points = 0;  // that a picture has, matched or not
 };
 
+/// How much time a pair may take.
+enum class SceneSearch : std::uint8_t {
+  kThorough,
+  kQuick,  // points are looked for in pictures of at most 480 columns, and fewer of them are laid over each other
+};
+
+/// Finds and matches the points of one pair after the other, in memory that it keeps.
+class SceneMatcher {
+ public:
+  SceneMatcher(Size size, int threads, SceneSearch search = SceneSearch::kThorough);
+  ~SceneMatcher();
+  void add(const Pair& pair);
+  /// Of all pairs so far.
+  SceneMatches matches() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
 inline constexpr std::int64_t kTwoMinutes = 3600;  // pairs of a usual camera
 
 /// SIFT points of pairs spread evenly over a stream, matched by their descriptors alone: no place, row or rig is assumed, so
@@ -33,9 +52,8 @@ inline constexpr std::int64_t kTwoMinutes = 3600;  // pairs of a usual camera
 /// Errors      those of the stream
 Result<SceneMatches> match_scene(PairSource& pairs, int threads, std::int64_t farthest = kTwoMinutes);
 
-/// The same of pairs of one size, or of one.
-SceneMatches match_pairs(std::span<const std::shared_ptr<const Pair>> pairs, int threads);
-SceneMatches match_pair(const Pair& pair, int threads);
+/// The same of one pair.
+SceneMatches match_pair(const Pair& pair, int threads, SceneSearch search = SceneSearch::kThorough);
 
 /// The cell of a picture parted into columns and rows that a place lies in, row by row.
 int cell_of(Vec2 at_px, Size size, int columns, int rows);

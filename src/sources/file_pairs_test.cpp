@@ -95,13 +95,24 @@ TEST(FilePairs, UnlikeRatesTakeTheNearest) {
   write_gray(dir / "right.mkv", ticks(0, 60, 3), {.unit = {1, 60}});  // 20 a second
   for (const bool swapped : {false, true}) {
     const PairsRead read = read_pairs(dir / (swapped ? "right.mkv" : "left.mkv"), dir / (swapped ? "left.mkv" : "right.mkv"));
-    ASSERT_EQ(read.shown.size(), 20u) << read.error << read.warning << ::testing::PrintToString(read.shown) << ::testing::PrintToString(read.skews_ms);
+    ASSERT_EQ(read.shown.size(), 20u) << read.error << read.warning << ::testing::PrintToString(read.shown)
+                                      << ::testing::PrintToString(read.skews_ms);
     for (std::size_t i = 0; i < 20; ++i) {
       EXPECT_LE(std::abs(read.shown[i].first - read.shown[i].second), 1);
       EXPECT_NEAR(read.skews_ms[i], (read.shown[i].second - read.shown[i].first) * 1000.0 / 60, 1.1);
     }
     EXPECT_EQ(read.end, Next::kEnd);
   }
+}
+
+TEST(FilePairs, InterlacedPicturesAreSaid) {
+  const TempFolder dir;
+  write_gray(dir / "left.mkv", ticks(0, 4), {.stream = [](AVStream& s) { s.codecpar->field_order = AV_FIELD_TT; }});
+  write_gray(dir / "right.mkv", ticks(0, 4));
+  const PairsRead read = read_pairs(dir / "left.mkv", dir / "right.mkv");
+  EXPECT_EQ(read.shown.size(), 4u) << read.error;
+  EXPECT_NE(read.warning.find("left.mkv is interlaced"), std::string::npos) << read.warning;
+  EXPECT_EQ(read.warning.find("right.mkv"), std::string::npos) << read.warning;
 }
 
 TEST(FilePairs, RatesThatVary) {

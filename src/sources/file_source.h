@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "duoptic/source.h"
-#include "sources/gray_scale.h"
+#include "sources/wide_values.h"
 
 namespace duo {
 
@@ -18,7 +18,7 @@ class FileSource : public Source {
   virtual std::optional<ViewLayout> layout() const { return std::nullopt; }
   /// Views that the file holds apart: video tracks of one size, pictures of an MPO. See open_view().
   virtual int views() const { return 1; }
-  /// Gray of more than eight bits is scaled as that of `other` from now on, and the other way round.
+  /// Values of more than eight bits are scaled as those of `other` from now on, and the other way round.
   virtual void scale_as(FileSource& other) = 0;
 
   // Of a video:

@@ -16,16 +16,6 @@ extern "C" {
 namespace duo::av {
 namespace {
 
-// libswscale's own gray and 16-bit paths round through YUV; a gray value must stay what it is (ground truth comes as gray).
-template <class ValueAt>
-void gray_to_rgb(Image<Rgb8>& into, ValueAt&& value_at) {
-  for (int y = 0; y < into.height(); ++y)
-    for (int x = 0; x < into.width(); ++x) {
-      const std::uint8_t v = value_at(y, x);
-      into.at(y, x) = {v, v, v};
-    }
-}
-
 // The deprecated "J" formats are the plain ones with full range; libswscale warns about them otherwise.
 AVPixelFormat without_j(AVPixelFormat format, bool& full_range) {
   switch (format) {
@@ -93,12 +83,21 @@ bool ToRgb::convert(const AVFrame& frame, Image<Rgb8>& into) {
   const Size size{frame.width, frame.height};
   if (size.empty() || size.width > kMaxSide || size.height > kMaxSide || !too_many_pixels(size).empty()) return false;
   if (into.size() != size) into = Image<Rgb8>(size);
+  // libswscale's own gray and 16-bit paths round through YUV; a gray value must stay what it is (ground truth comes as gray).
   if (frame.format == AV_PIX_FMT_GRAY8) {
-    gray_to_rgb(into, [&](int y, int x) { return frame.data[0][std::ptrdiff_t{y} * frame.linesize[0] + x]; });
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) {
+        const std::uint8_t v = frame.data[0][std::ptrdiff_t{y} * frame.linesize[0] + x];
+        into.at(y, x) = {v, v, v};
+      }
     return true;
   }
-  if (is_gray16(frame.format)) {
-    gray_to_rgb(into, [&](int y, int x) { return gray_->of(gray16_at(frame, y, x)); });
+  if (const WideFormat wide = wide_format(frame.format); wide.channels > 0) {
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) {
+        const auto value = [&](int c) { return wide_->of(wide_value(frame, wide, y, x, wide.coloured() ? c : 0)); };
+        into.at(y, x) = {value(0), value(1), value(2)};
+      }
     return true;
   }
 

@@ -9,7 +9,7 @@
 #include "core/libav.h"
 #include "duoptic/frame.h"
 #include "duoptic/result.h"
-#include "sources/gray_scale.h"
+#include "sources/wide_values.h"
 
 namespace duo::av {
 
@@ -74,12 +74,12 @@ inline TimeNs capture_ns(const AVPacket& packet, AVRational base) {
 /// machine.
 class ToRgb {
  public:
-  /// Sees a frame before it is converted: of gray of 16 bits, how many are used.
-  void see(const AVFrame& frame) { gray_->see(frame); }
-  /// Both convert gray of 16 bits alike from now on.
+  /// Sees a frame before it is converted: of 16 bits, how many are used.
+  void see(const AVFrame& frame) { wide_->see(frame); }
+  /// Both convert 16 bits alike from now on.
   void scale_as(ToRgb& other) {
-    gray_->see(*other.gray_);
-    other.gray_ = gray_;
+    wide_->see(*other.wide_);
+    other.wide_ = gray_;
   }
   /// False when the pixel format cannot be converted or the picture is larger than kMaxSide. libswscale reads in steps of its
   /// own: kReadBeyond bytes after the last row's must be there.
@@ -88,7 +88,7 @@ class ToRgb {
   static constexpr int kMaxSide = 16384;
 
  private:
-  std::shared_ptr<GrayScale> gray_ = std::make_shared<GrayScale>();
+  std::shared_ptr<WideScale> wide_ = std::make_shared<WideScale>();
   Scaler scaler_;
   int format_ = -1, colorspace_ = -1, range_ = -1;
   Size size_;

@@ -50,9 +50,9 @@ Result<std::unique_ptr<Source>> open_file_source(const std::filesystem::path& pa
   DUO_TRY_ASSIGN(const Descriptor file, open_file(path, std::numeric_limits<std::size_t>::max(), "input"));
   DUO_TRY_ASSIGN(const std::string head, beginning(file, kPictureMagicBytes, name));
   if (head.empty()) return Error{ErrorCode::kBadInput, fmt::format("cannot read {}: the file is empty", name)};
-  if (const std::string_view kind = foreign_kind(head); !kind.empty())
+  if (const auto kind = foreign_kind(head))
     return Error{ErrorCode::kUnsupported,
-                 fmt::format("cannot read {}: it is a {} file, which is not read; save it as PNG or JPEG", name, kind)};
+                 fmt::format("cannot read {}: it is {}, and that is not read; {}", name, kind->name, kind->advice)};
   av_log_set_level(AV_LOG_QUIET);  // what is wrong is said in our results
   if (!is_picture(head)) return open_video(path, track);
   if (is_jpeg(head)) {

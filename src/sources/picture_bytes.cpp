@@ -217,37 +217,56 @@ std::string unsupported_in(std::string_view bytes) {
   return {};
 }
 
-std::string_view foreign_kind(std::string_view head) {
+std::optional<ForeignKind> foreign_kind(std::string_view head) {
+  constexpr std::string_view kPicture = "save it as PNG or JPEG",
+                             kVideo = "make a Matroska of it: ffmpeg -i FILE -c copy FILE.mkv",
+                             kBare = "give it times: ffmpeg -r 30 -i FILE -c copy FILE.mkv, with its camera's rate";
   struct Kind {
     std::size_t at;
-    std::string_view magic, name;
+    std::string_view magic;
+    ForeignKind kind;
   };
   constexpr Kind kKinds[] = {
-      {4, "ftyphei"sv, "HEIC"},
-      {4, "ftyphev"sv, "HEIC"},
-      {4, "ftypmif1"sv, "HEIF"},
-      {4, "ftypmsf1"sv, "HEIF"},
-      {4, "ftypavi"sv, "AVIF"},
-      {0, "\xff\x0a"sv, "JPEG XL"},
-      {4, "JXL \r\n"sv, "JPEG XL"},
-      {4, "jP  \r\n"sv, "JPEG 2000"},
-      {0, "\xff\x4f\xff\x51"sv, "JPEG 2000"},
-      {0, "GIF8"sv, "GIF"},
-      {0, "\x76\x2f\x31\x01"sv, "OpenEXR"},
-      {0, "#?RADIANCE"sv, "Radiance HDR"},
-      {0, "8BPS"sv, "Photoshop"},
-      {0, "II+\0"sv, "BigTIFF"},
-      {0, "MM\0+"sv, "BigTIFF"},
-      {0, "\x49\x49\xbc\x01"sv, "JPEG XR"},
-      {0, "PF\n"sv, "PFM"},
-      {0, "Pf\n"sv, "PFM"},
-      {0, "%PDF"sv, "PDF"},
-      {0, "II\x55\0"sv, "camera raw"},
-      {0, "FUJIFILMCCD-RAW"sv, "camera raw"},
-      {0, "\x93NUMPY"sv, "NumPy"},
+      {4, "ftyphei"sv, {"a HEIC file", kPicture}},
+      {4, "ftyphev"sv, {"a HEIC file", kPicture}},
+      {4, "ftypmif1"sv, {"a HEIF file", kPicture}},
+      {4, "ftypmsf1"sv, {"a HEIF file", kPicture}},
+      {4, "ftypavi"sv, {"an AVIF file", kPicture}},
+      {0, "\xff\x0a"sv, {"a JPEG XL file", kPicture}},
+      {4, "JXL \r\n"sv, {"a JPEG XL file", kPicture}},
+      {4, "jP  \r\n"sv, {"a JPEG 2000 file", kPicture}},
+      {0, "\xff\x4f\xff\x51"sv, {"a JPEG 2000 file", kPicture}},
+      {0, "GIF8"sv, {"a GIF file", kPicture}},
+      {0, "\x76\x2f\x31\x01"sv, {"a OpenEXR file", kPicture}},
+      {0, "#?RADIANCE"sv, {"a Radiance HDR file", kPicture}},
+      {0, "8BPS"sv, {"a Photoshop file", kPicture}},
+      {0, "II+\0"sv, {"a BigTIFF file", kPicture}},
+      {0, "MM\0+"sv, {"a BigTIFF file", kPicture}},
+      {0, "\x49\x49\xbc\x01"sv, {"a JPEG XR file", kPicture}},
+      {0, "PF\n"sv, {"a PFM file", kPicture}},
+      {0, "Pf\n"sv, {"a PFM file", kPicture}},
+      {0, "%PDF"sv, {"a PDF file", kPicture}},
+      {0, "II\x55\0"sv, {"a camera raw file", kPicture}},
+      {0, "FUJIFILMCCD-RAW"sv, {"a camera raw file", kPicture}},
+      {0, "\x93NUMPY"sv, {"a NumPy file", kPicture}},
+      {0, "YUV4MPEG2 "sv, {"a YUV4MPEG file", kVideo}},
+      {0, "nut/multimedia container"sv, {"a NUT file", kVideo}},
+      {0, "\x06\x0e\x2b\x34"sv, {"an MXF file", kVideo}},
+      {0, "FLV\x01"sv, {"a Flash video", kVideo}},
+      {0, "OggS"sv, {"an Ogg file", kVideo}},
+      {0, "\x30\x26\xb2\x75"sv, {"a Windows Media file", kVideo}},
+      {0, "\0\0\0\x01\x67"sv, {"bare H.264, which holds no times", kBare}},
+      {0, "\0\0\x01\x67"sv, {"bare H.264, which holds no times", kBare}},
+      {0, "\0\0\0\x01\x27"sv, {"bare H.264, which holds no times", kBare}},
+      {0, "\0\0\0\x01\x09"sv, {"bare H.264, which holds no times", kBare}},
+      {0, "\0\0\0\x01\x40\x01"sv, {"bare H.265, which holds no times", kBare}},
   };
   for (const Kind& kind : kKinds)
-    if (head.size() > kind.at && head.substr(kind.at).starts_with(kind.magic)) return kind.name;
+    if (head.size() > kind.at && head.substr(kind.at).starts_with(kind.magic)) return kind.kind;
+  constexpr std::size_t kWebpFlags = 20, kAnimation = 2;
+  if (head.size() > kWebpFlags && head.starts_with("RIFF") && head.substr(8, 8) == "WEBPVP8X" &&
+      (static_cast<std::uint8_t>(head[kWebpFlags]) & kAnimation) != 0)
+    return ForeignKind{"a moving WebP", kPicture};
   return {};
 }
 

@@ -33,7 +33,11 @@ std::optional<ViewLayout> layout_of_jps(std::string_view bytes, bool named_jps);
 /// "" or what the picture has that is not read: an unsupported kind is not a damaged file.
 std::string unsupported_in(std::string_view bytes);
 
-/// Name of a kind of pictures of which nothing is read ("HEIC"), by its first bytes; empty for all else.
-std::string_view foreign_kind(std::string_view head);
+/// A kind of files of which nothing is read, told by its first bytes.
+struct ForeignKind {
+  std::string_view name;    // "a HEIC file"
+  std::string_view advice;  // what makes a file of it that is read
+};
+std::optional<ForeignKind> foreign_kind(std::string_view head);
 
 }  // namespace duo

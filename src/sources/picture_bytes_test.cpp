@@ -205,6 +205,37 @@ TEST(Gray16, BothPicturesAreScaledByWhatBothUse) {
   }
 }
 
+/// Colour of machine cameras, and gray with opacity.
+TEST(Wide, ColoursAreScaledAsGrayIs) {
+  const TempFolder dir;
+  for (const auto& [codec, format] : {std::pair(AV_CODEC_ID_PNG, AV_PIX_FMT_RGB48BE),
+                                      {AV_CODEC_ID_PNG, AV_PIX_FMT_RGBA64BE},
+                                      {AV_CODEC_ID_PNG, AV_PIX_FMT_YA16BE},
+                                      {AV_CODEC_ID_TIFF, AV_PIX_FMT_RGB48LE}}) {
+    Encoder encoder = make_encoder(codec, format);
+    const av::DecodedFrame frame = pattern(format, 0);
+    const WideFormat wide = wide_format(format);
+    for (int y = 0; y < kSize.height; ++y)
+      for (int x = 0; x < kSize.width; ++x)
+        for (int c = 0; c < wide.channels; ++c) {
+          const bool opacity = c == 3 || (wide.channels == 2 && c == 1);
+          const unsigned v = opacity ? 65535 : static_cast<unsigned>(16 * x + c);  // ten bits
+          std::uint8_t* p = frame->data[0] + y * frame->linesize[0] + 2 * (x * wide.channels + c);
+          p[wide.little_endian ? 0 : 1] = static_cast<std::uint8_t>(v);
+          p[wide.little_endian ? 1 : 0] = static_cast<std::uint8_t>(v >> 8);
+        }
+    encoder.encode(frame.get(), [&](AVPacket& p) {
+      put(dir / "wide", {reinterpret_cast<char*>(p.data), static_cast<std::size_t>(p.size)});
+    });
+    auto source = open_source(dir / "wide");
+    ASSERT_TRUE(source) << source.error().what;
+    Picture picture;
+    ASSERT_TRUE((*source)->next(picture));
+    EXPECT_EQ(picture.pixels.at(9, 50).r, 200) << format;
+    EXPECT_EQ(picture.pixels.at(9, 50).b, 200) << format;
+  }
+}
+
 void replace_tag(std::string& tiff, unsigned tag, unsigned value) {
   const auto at = [&](std::size_t i) { return static_cast<unsigned>(static_cast<std::uint8_t>(tiff[i])); };
   const std::size_t directory = at(4) | at(5) << 8 | at(6) << 16;
@@ -242,6 +273,11 @@ TEST(Unsupported, WholeFilesAreNotCalledDamagedAndNeverBlack) {
   refused("a.avif", big(24, 4) + "ftypavif" + std::string(12, '\0'), "AVIF");
   refused("a.gif", "GIF89a" + std::string(30, '\0'), "GIF");
   refused("a.jxl", "\xff\x0a" + std::string(30, 'x'), "JPEG XL");
+  refused("a.webp", "RIFF" + std::string("\x20\0\0\0WEBPVP8X\x0a\0\0\0\x02\0\0\0", 20) + std::string(12, '\0'),
+          "a moving WebP");
+  refused("a.h264", std::string("\0\0\0\x01\x67\x64\0\x1f", 8) + std::string(30, 'x'), "bare H.264, which holds no times");
+  refused("a.h265", std::string("\0\0\0\x01\x40\x01\x0c", 7) + std::string(30, 'x'), "ffmpeg -r 30 -i");
+  refused("a.y4m", "YUV4MPEG2 W64 H48 F30:1\n" + std::string(64, 'x'), "ffmpeg -i FILE -c copy");
   refused("a.pfm", "Pf\n4 4\n-1\n" + std::string(64, '\0'), "PFM");
   std::string arithmetic = coded(AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P);
   const std::size_t frame = arithmetic.find("\xff\xc0"sv);

@@ -153,7 +153,7 @@ class PictureFile final : public FileSource {
   }
   Result<Next> next(Picture& into) override {
     if (std::exchange(given_, true)) return Next::kEnd;
-    if (is_gray16(frame_->format)) to_rgb_.convert(*frame_, pixels_);  // its scale may be another one by now
+    if (is_wide(frame_->format)) to_rgb_.convert(*frame_, pixels_);  // its scale may be another one by now
     Image<Rgb8> turned;
     put_upright(pixels_, orientation_, turned);
     into.pixels = std::move(pixels_);

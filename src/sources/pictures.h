@@ -11,7 +11,7 @@
 namespace duo {
 
 /// How many leading bytes of a file is_picture() wants to see.
-inline constexpr std::size_t kPictureMagicBytes = 16;
+inline constexpr std::size_t kPictureMagicBytes = 24;
 
 /// True for PNG, JPEG, BMP, TIFF, WebP and PNM, told by their first bytes.
 bool is_picture(std::string_view head);

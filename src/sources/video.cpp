@@ -89,6 +89,7 @@ class VideoFile final : public FileSource {
   int stream_ = -1;
   bool alone_ = false;          // each picture is coded without others
   bool has_checksums_ = false;  // of FFV1, in each picture so far
+  bool interlaced_ = false;     // as the container or the first picture says
   Size size_;
   std::int64_t announced_ = 0;  // packets; 0 = not announced
   std::int64_t packets_ = 0;    // read so far
@@ -188,6 +189,7 @@ Result<void> VideoFile::open(const std::filesystem::path& path, std::optional<in
   size_ = upright({frame_->width, frame_->height}, orientation_);
   first_ns_ = av::to_ns(frame_->best_effort_timestamp, stream().time_base);
   to_rgb_.see(*frame_);
+  interlaced_ = frame_->interlaced_frame != 0 || stream().codecpar->field_order > AV_FIELD_PROGRESSIVE;
   std::string other_layout;
   layout_ = layout_of(stream(), *frame_, other_layout);
   if (!other_layout.empty())
@@ -214,9 +216,14 @@ TimeNs VideoFile::end_ns() const {
 }
 
 std::string VideoFile::warning() const {
-  if (left_out_ == 0) return {};
-  return fmt::format("{} picture{} of {} {} damaged: left out", left_out_, left_out_ == 1 ? "" : "s", name_,
-                     left_out_ == 1 ? "is" : "are");
+  std::string all;
+  if (left_out_ > 0)
+    all = fmt::format("{} picture{} of {} {} damaged: left out", left_out_, left_out_ == 1 ? "" : "s", name_,
+                      left_out_ == 1 ? "is" : "are");
+  if (interlaced_)
+    all += fmt::format("{}{} is interlaced: every second row is of another moment; ffmpeg -i {} -vf bwdif makes it whole",
+                       all.empty() ? "" : "; ", name_, name_);
+  return all;
 }
 
 /// What the container says of its length: that of AVI's header counts pictures that did not come, too.
@@ -247,8 +254,8 @@ bool VideoFile::follows() {
 
 std::vector<TimeNs> VideoFile::indexed_times() {
   const bool names_each = std::strcmp(container_->iformat->name, "avi") == 0 || has_index();
-  // How bright a gray of 16 bits comes depends on the pictures before.
-  if (!alone_ || is_gray16(decoder_->pix_fmt) || !names_each || lacks_bytes_.value_or(!has_index())) return {};
+  // How bright a value of 16 bits comes depends on the pictures before.
+  if (!alone_ || is_wide(decoder_->pix_fmt) || !names_each || lacks_bytes_.value_or(!has_index())) return {};
   AVStream* const s = container_->streams[stream_];
   const std::int64_t bytes = avio_size(container_->pb);
   std::vector<TimeNs> times;
@@ -263,7 +270,7 @@ std::vector<TimeNs> VideoFile::indexed_times() {
 }
 
 bool VideoFile::prepare_seek() {
-  if (recorded_frame_ns_ <= 0 || container_->duration <= 0 || is_gray16(decoder_->pix_fmt)) return false;
+  if (recorded_frame_ns_ <= 0 || container_->duration <= 0 || is_wide(decoder_->pix_fmt)) return false;
   return av_seek_frame(container_.get(), stream_, 0, AVSEEK_FLAG_BACKWARD) >= 0;  // reads Matroska's index
 }
 

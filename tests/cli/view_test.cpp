@@ -2,6 +2,7 @@
 #include "view_window.h"
 
 #include <array>
+#include <cmath>
 
 namespace duo::window_test {
 namespace {
@@ -247,6 +248,34 @@ TEST_F(Running, StepsEnlargesAndMeasures) {
   EXPECT_TRUE(waited(alone));
   press("Escape");
   EXPECT_TRUE(waited([&] { return same(caption(second), caption(screenshot())); }));
+  press("q");
+  expect_end(0);
+}
+
+/// While the first second is stepped through: on stderr, and at the top of the controls, where no other panel pushes it out.
+TEST_F(Running, ARigThatDoesNotFitIsTold) {
+  constexpr Rgb8 kBad = {255, 105, 97};
+  const SyntheticPair room = render_synthetic({.size = kSize}, 2);
+  auto left = VideoWriter::open(at("slow_left.mp4"), kSize, 0.1), right = VideoWriter::open(at("slow_right.mp4"), kSize, 0.1);
+  ASSERT_TRUE(left && right);
+  for (int i = 0; i < 80; ++i) ASSERT_TRUE(left->write(room.pair.left.pixels) && right->write(room.pair.right.pixels));
+  ASSERT_TRUE(left->finish() && right->finish());
+  const double c = std::cos(0.3 * M_PI / 180), s = std::sin(0.3 * M_PI / 180);
+  Rig tilted = room.rig;
+  tilted.right_from_left = Rigid3{Mat3{{1, 0, 0, 0, c, -s, 0, s, c}}, {}} * room.rig.right_from_left;
+  ASSERT_TRUE(save_rig(tilted, at("tilted.json")));
+  const auto red = [](const Image<Rgb8>& window) { return near(window, 1280, 60, 50, kBad); };
+
+  start("slow_left.mp4 slow_right.mp4 --rig tilted.json --model lite --paused");
+  ASSERT_TRUE(waited([&] { return hues_in(screenshot().view().crop(40, 570, {520, 380})) > 5; }));
+  EXPECT_EQ(red(screenshot()), 0);
+  EXPECT_EQ(bytes_of(at("view_err.txt")), "");
+  int presses = 0;  // each steps by one pair, or by none while the one before is worked on: the clip does not end
+  EXPECT_TRUE(waited([&] {
+    press(presses++ < 60 ? "Right" : "shift");
+    return bytes_of(at("view_err.txt")).find("the rig does not fit these pictures") != std::string::npos;
+  }));
+  EXPECT_TRUE(waited([&] { return red(screenshot()) > 20; }));
   press("q");
   expect_end(0);
 }
