@@ -13,6 +13,7 @@
 #include "duoptic/output_set.h"
 #include "duoptic/pipeline.h"
 #include "input.h"
+#include "live_news.h"
 #include "progress.h"
 #include "rig_report.h"
 #include "timing.h"
@@ -172,9 +173,11 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
   DepthOfAll depth_of_all;
   progress.expect(pipeline.count());
   if (pipeline.live()) Interrupt::is_the_end();
+  LiveNews live(app);
   while (!Interrupt::asked()) {
     DUO_TRY_ASSIGN(summary.end, pipeline.next());
     say_rig_news(app, pipeline);
+    live.see(pipeline);
     if (summary.end == Next::kNothing) continue;
     if (summary.end != Next::kNew) break;
     beyond = static_cast<std::int64_t>(pipeline.pair()->sequence) >= range.end;
@@ -297,7 +300,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(const Summary summary, process(pipeline, options, app, progress));
   progress.end();
   print(summary, pipeline, options);
-  if (const std::string warning = pipeline.warning(); !warning.empty()) say(app, "warning: " + warning);
+  if (const std::string warning = pipeline.warning(); !pipeline.live() && !warning.empty()) say(app, "warning: " + warning);
   return summary.end == Next::kCut ? Exit::kCut : Exit::kOk;
 }
 

@@ -11,6 +11,7 @@
 #include "duoptic/interrupt.h"
 #include "duoptic/pipeline.h"
 #include "input.h"
+#include "live_news.h"
 #include "progress.h"
 #include "rig_report.h"
 
@@ -93,11 +94,13 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
                              rectified.size.width, rectified.size.height)};
   DepthQualityMeter meter(rectified, region, options.distance_m);
   Progress progress(app, options.frames, options.json);
+  LiveNews live(app);
   int frames = 0;
   Next next = Next::kNew;
   while (frames < options.frames) {
     DUO_TRY_ASSIGN(next, pipeline.next());
     say_rig_news(app, pipeline);
+    live.see(pipeline);
     if (next == Next::kNothing) continue;
     if (next != Next::kNew) break;
     DUO_TRY(meter.add(*pipeline.frame()));
@@ -105,7 +108,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   }
   if (frames == 0) return Error{ErrorCode::kBadInput, fmt::format("cannot measure depth: {} gave no frame", options.left)};
   print(meter.quality(), region, pipeline, options);
-  if (const std::string warning = pipeline.warning(); !warning.empty()) say(app, "warning: " + warning);
+  if (const std::string warning = pipeline.warning(); !pipeline.live() && !warning.empty()) say(app, "warning: " + warning);
   return next == Next::kCut ? Exit::kCut : Exit::kOk;
 }
 

@@ -7,6 +7,7 @@
 #include "duoptic/interrupt.h"
 #include "duoptic/pipeline.h"
 #include "input.h"
+#include "live_news.h"
 #include "progress.h"
 #include "rig_report.h"
 #include "timing.h"
@@ -40,10 +41,12 @@ Result<Next> record_all(Pipeline& pipeline, const Options& options, const CLI::A
   const bool by_clock = pipeline.live() && options.seconds > 0;
   constexpr double kGrace_ms = 300;  // the last pairs are on their way
   Progress progress(app, pipeline.count(), options.quiet);
+  LiveNews live(app);
   Next next = Next::kNew;
   while (!Interrupt::asked() && pipeline.recording().on && next != Next::kEnd && next != Next::kCut) {
     DUO_TRY_ASSIGN(next, pipeline.next());
     say_rig_news(app, pipeline);
+    live.see(pipeline);
     progress.frame(pipeline.recording().pairs);
     if (by_clock && clock_ms(CLOCK_MONOTONIC) - start_ms >= options.seconds * 1000 + kGrace_ms) break;
   }
@@ -93,7 +96,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   if (pipeline.recording().pairs == 0)
     return Error{ErrorCode::kBadInput, fmt::format("nothing recorded: {} gave no pair; no file was made", options.left)};
   print(pipeline, options, end, setup.rig.has_value());
-  if (const std::string warning = pipeline.warning(); !warning.empty()) say(app, "warning: " + warning);
+  if (const std::string warning = pipeline.warning(); !pipeline.live() && !warning.empty()) say(app, "warning: " + warning);
   return end == Next::kCut ? Exit::kCut : Exit::kOk;
 }
 

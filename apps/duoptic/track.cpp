@@ -6,6 +6,7 @@
 
 #include "duoptic/interrupt.h"
 #include "duoptic/skew_watch.h"
+#include "live_news.h"
 #include "progress.h"
 #include "rig_report.h"
 #include "sink_options.h"
@@ -50,14 +51,11 @@ struct Options {
   SinkOptions sinks;
 };
 
-/// Says what happens to live cameras, once, to the engine, and to the recording.
+/// Says what happens to live cameras, to the engine, and to the recording.
 class Events {
  public:
-  explicit Events(const CLI::App& app) : app_(app) {}
-  void see(const std::string& warning) {
-    if (warning != said_ && !warning.empty()) say(app_, warning);
-    said_ = warning;
-  }
+  explicit Events(const CLI::App& app) : app_(app), live_(app) {}
+  void see(const Pipeline& pipeline) { live_.see(pipeline); }
   void happened(const std::string& event) {
     if (!event.empty()) say(app_, "warning: " + event);
   }
@@ -70,7 +68,7 @@ class Events {
 
  private:
   const CLI::App& app_;
-  std::string said_;
+  LiveNews live_;
   bool recording_failed_ = false;
 };
 
@@ -79,7 +77,7 @@ Result<Next> next_frame(Pipeline& pipeline, Events& events) {
   while (true) {
     if (Interrupt::asked()) return Next::kEnd;
     DUO_TRY_ASSIGN(const Next next, pipeline.next());
-    if (pipeline.live()) events.see(pipeline.warning());
+    events.see(pipeline);
     if (next == Next::kNew) events.happened(pipeline.event());
     events.happened(pipeline.rig_news());
     if (next != Next::kNothing) return next;

@@ -22,8 +22,7 @@ struct RigFit {
 /// Judges by the numbers of the rig, where they are of no use, and by the pairs as scene_health() does. Without a rig, and
 /// where the two views do not agree, it looks for what is known to go wrong: left and right swapped, both mirrored, one picture
 /// twice, one camera on its head, on its side or mirrored, pictures that have nothing in common. What the pairs do not tell for
-/// sure is good. A quick look at the first pair, some 30 ms at 640x480, ends it where all is right beyond doubt; else all pairs
-/// are looked at thoroughly, some 30 to 70 ms each.
+/// sure is good. Where all is right beyond doubt the first pair is enough, some 30 ms at 640x480; else all are looked at.
 RigFit rig_fit(const std::optional<Rig>& rig, std::span<const std::shared_ptr<const Pair>> pairs, int threads);
 
 }  // namespace duo

@@ -79,7 +79,7 @@ class ToRgb {
   /// Both convert 16 bits alike from now on.
   void scale_as(ToRgb& other) {
     wide_->see(*other.wide_);
-    other.wide_ = gray_;
+    other.wide_ = wide_;
   }
   /// False when the pixel format cannot be converted or the picture is larger than kMaxSide. libswscale reads in steps of its
   /// own: kReadBeyond bytes after the last row's must be there.

@@ -255,10 +255,11 @@ TEST(RecordWithSkew, DepthAndTrackHaveTheSameDisparities) {
   EXPECT_GT(moved, 20);
 }
 
-/// Pictures that do not come any more keep no recording open.
+/// Pictures that do not come any more keep no recording open, and are said to be away.
 TEST_F(Record, SecondsEndByTheClock) {
-  const Ended ended = run("record gst:a gst:b -o silent.mkv --seconds 2 --json", with_camera_that_falls_silent());
+  const Ended ended = run("record gst:a gst:b -o silent.mkv --seconds 3.5 --json", with_camera_that_falls_silent());
   ASSERT_EQ(ended.exit, 0) << ended.err;
+  EXPECT_NE(ended.err.find("gst:a is away: it gives no pictures"), std::string::npos) << ended.err;
   EXPECT_GT(ended.json().value("pairs", 0), 0);
   EXPECT_LT(ended.json().value("length_s", 9.0), 2);
 }
