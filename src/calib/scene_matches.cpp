@@ -31,24 +31,13 @@ constexpr int kMostOfACell = 400;       // over all pairs
 constexpr int kFewOfACell = 8;          // of one pair, in a quick search
 constexpr int kQuickWidth = 480;        // of its pictures at most, px
 
-std::vector<SceneMatch> best_of_each_cell(std::vector<SceneCandidate> all, Size size) {
-  std::stable_sort(all.begin(), all.end(),
-                   [](const SceneCandidate& a, const SceneCandidate& b) { return a.square_distance < b.square_distance; });
-  std::array<int, kColumns * kRows> counts{};
-  std::vector<SceneMatch> out;
-  for (const SceneCandidate& c : all)
-    if (++counts[static_cast<std::size_t>(cell_of(c.match.left_px, size, kColumns, kRows))] <= kMostOfACell)
-      out.push_back(c.match);
-  return out;
-}
-
-/// The best of each cell, so that what is laid over each other lies all over the picture.
-void keep_few(std::vector<SceneCandidate>& candidates, Size size) {
+/// Keeps the best of each cell of the picture, so that they lie all over it.
+void keep_best(std::vector<SceneCandidate>& candidates, Size size, int most_of_a_cell) {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const SceneCandidate& a, const SceneCandidate& b) { return a.square_distance < b.square_distance; });
   std::array<int, kColumns * kRows> counts{};
   std::erase_if(candidates, [&](const SceneCandidate& c) {
-    return ++counts[static_cast<std::size_t>(cell_of(c.match.left_px, size, kColumns, kRows))] > kFewOfACell;
+    return ++counts[static_cast<std::size_t>(cell_of(c.match.left_px, size, kColumns, kRows))] > most_of_a_cell;
   });
 }
 
@@ -116,7 +105,7 @@ void SceneMatcher::add(const Pair& pair) {
     if (found.seen != PointMatch::kNone)
       candidates.push_back({{s.place_of(s.left[i]), s.place_of(s.right[found.seen])}, found.square_distance});
   }
-  if (s.quick) keep_few(candidates, s.scene.size);
+  if (s.quick) keep_best(candidates, s.scene.size, kFewOfACell);
   for (SceneCandidate& c : candidates)
     if (const auto there = align_match(s.smooth_left, c.match.left_px, s.smooth_right, c.match.right_px, kRadius_px)) {
       c.match.right_px = *there;
@@ -129,7 +118,9 @@ void SceneMatcher::add(const Pair& pair) {
 
 SceneMatches SceneMatcher::matches() const {
   SceneMatches scene = state_->scene;
-  scene.matches = best_of_each_cell(state_->all, scene.size);
+  std::vector<SceneCandidate> best = state_->all;
+  keep_best(best, scene.size, kMostOfACell);
+  for (const SceneCandidate& c : best) scene.matches.push_back(c.match);
   return scene;
 }
 
