@@ -21,14 +21,10 @@ void title(const char* text) {
   ImGui::PopFont();
 }
 
-ImU32 color_of_verdict(RigVerdict verdict) {
-  return verdict == RigVerdict::kGood ? kBox : verdict == RigVerdict::kCanBeImproved ? kWarn : kBad;
-}
-
-/// What is wrong, above all that may lie below the window's end.
+/// Above all that may lie below the window's end.
 void put_trouble(const PlayerStatus& status) {
-  if (!status.problem.empty()) put_text(kBad, status.problem);
-  if (!status.rig_news.empty()) put_text(kBad, status.rig_news);
+  for (const std::string* text : {&status.problem, &status.rig_news})
+    if (!text->empty()) put_text(kBad, *text);
 }
 
 const char* word_of(JointState state) {
@@ -383,7 +379,7 @@ void Sidebar::put_source(Player& player, const PlayerStatus& status) const {
   put_fact("baseline", rig.metric ? fmt::format("{:.1f} mm", 1000 * rig.baseline_m()) : "a guess: not metric");
   put_fact("engine", header.engine);
   put_fact("window", device_);
-  for (const RigDoubt& doubt : doubts_) put_text(color_of_verdict(doubt.verdict), doubt.what);
+  for (const RigDoubt& doubt : doubts_) put_text(color_of(doubt.verdict), doubt.what);
   if (status.checking_rig)
     ImGui::TextDisabled("looking at the pictures ...");
   else if (ImGui::Button("Does the rig fit this scene?", {-1, 0}))
@@ -391,7 +387,7 @@ void Sidebar::put_source(Player& player, const PlayerStatus& status) const {
   if (!status.health) return;
   if (!*status.health) return put_text(kBad, status.health->error().what);
   const SceneHealth& health = **status.health;
-  put_text(color_of_verdict(health.verdict), fmt::format("By this scene: {}", name_of(health.verdict)));
+  put_text(color_of(health.verdict), fmt::format("By this scene: {}", name_of(health.verdict)));
   put_fact("rows", fmt::format("{:.2f} px off; good below {}", health.row_px, kGoodRow_px));
   put_fact("pan", fmt::format("{:.1f} \u00b1 {:.1f} px", health.pan_px, health.pan_sigma_px));
   put_fact("points", fmt::format("{} in {:.0f} % of the picture", health.points, 100 * health.covered));

@@ -96,6 +96,10 @@ ImU32 color_of(JointState state) {
   return kFaint;
 }
 
+ImU32 color_of(RigVerdict verdict) {
+  return verdict == RigVerdict::kGood ? kBox : verdict == RigVerdict::kCanBeImproved ? kWarn : kBad;
+}
+
 void dashed_line(ImDrawList& list, ImVec2 from, ImVec2 to, ImU32 color, float thickness, float dash) {
   const ImVec2 along = {to.x - from.x, to.y - from.y};
   const float length = std::hypot(along.x, along.y);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "duoptic/person.h"
+#include "duoptic/rig_health.h"
 
 namespace duo::app::view {
 
@@ -27,6 +28,7 @@ void put_fact(const char* name, const std::string& text);
 
 /// Of a joint by its state: seen, inferred, lost.
 ImU32 color_of(JointState state);
+ImU32 color_of(RigVerdict verdict);
 
 void dashed_line(ImDrawList& list, ImVec2 from, ImVec2 to, ImU32 color, float thickness, float dash);
 void dashed_circle(ImDrawList& list, ImVec2 centre, float radius, ImU32 color, float thickness, float dash);
