@@ -34,6 +34,7 @@ foreach(file camera clock_model controls decode device modes system_calls)
   target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/camera/${file}.cpp)
 endforeach()
 target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/live/live_pairs.cpp)
+duoptic_test(sources/libav ${PROJECT_SOURCE_DIR}/src/sources/libav_test.cpp)
 duoptic_test(sources/pass_to ${PROJECT_SOURCE_DIR}/src/sources/pass_to_test.cpp)
 duoptic_test(sources/live ${PROJECT_SOURCE_DIR}/src/sources/live/live_test.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/camera/camera_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/stream_test.cpp)

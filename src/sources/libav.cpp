@@ -6,6 +6,7 @@ extern "C" {
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <vector>
@@ -37,6 +38,28 @@ AVPixelFormat without_j(AVPixelFormat format, bool& full_range) {
     default:
       return format;
   }
+}
+
+/// The planes of a JPEG of full range and half as much chroma; nothing of another kind of picture.
+std::optional<YuvPlanes> jpeg_planes(const AVFrame& frame) {
+  bool full_range = frame.color_range == AVCOL_RANGE_JPEG;
+  const AVPixelFormat format = without_j(static_cast<AVPixelFormat>(frame.format), full_range);
+  const bool half_rows = format == AV_PIX_FMT_YUV420P;
+  const int w = frame.width, h = frame.height;
+  if (!full_range || (!half_rows && format != AV_PIX_FMT_YUV422P)) return std::nullopt;
+  if (w % 2 != 0 || h % 2 != 0 || std::min(w, h) < YuvPlanes::kLeast) return std::nullopt;
+  const auto plane = [&](int i, Size size) { return View<const std::uint8_t>(frame.data[i], size, frame.linesize[i]); };
+  const Size chroma{w / 2, half_rows ? h / 2 : h};
+  return YuvPlanes{plane(0, {w, h}), plane(1, chroma), plane(2, chroma)};
+}
+
+/// As libswscale makes them of its coefficients for full range.
+YuvWeights yuv_weights(int colorspace) {
+  const int* const c = sws_getCoefficients(colorspace);  // red of v, blue of u, green of u and v, the latter to be subtracted
+  const auto weight = [](std::int64_t value) {
+    return static_cast<std::int16_t>((value * 224 / 255 * (1 << 13) + (1 << 15)) >> 16);
+  };
+  return {weight(c[0]), weight(-c[2]), weight(-c[3]), weight(c[1])};
 }
 
 std::atomic<std::int64_t> pixel_limit = kMostPixels;
@@ -98,6 +121,12 @@ bool ToRgb::convert(const AVFrame& frame, Image<Rgb8>& into) {
         const auto value = [&](int c) { return wide_->of(wide_value(frame, wide, y, x, wide.coloured() ? c : 0)); };
         into.at(y, x) = {value(0), value(1), value(2)};
       }
+    return true;
+  }
+
+  if (const auto planes = jpeg_planes(frame)) {
+    if (!yuv_ || yuv_->width != size.width) yuv_.emplace(size.width);
+    simd::yuv_rgb(*planes, yuv_weights(frame.colorspace), *yuv_, into);
     return true;
   }
 

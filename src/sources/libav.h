@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/capture_mark.h"
@@ -10,6 +11,7 @@
 #include "duoptic/frame.h"
 #include "duoptic/result.h"
 #include "sources/wide_values.h"
+#include "stages/yuv_rgb/yuv_rgb.h"
 
 namespace duo::av {
 
@@ -89,6 +91,7 @@ class ToRgb {
 
  private:
   std::shared_ptr<WideScale> wide_ = std::make_shared<WideScale>();
+  std::optional<simd::YuvScratch> yuv_;  // of JPEGs
   Scaler scaler_;
   int format_ = -1, colorspace_ = -1, range_ = -1;
   Size size_;

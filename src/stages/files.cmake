@@ -1,6 +1,7 @@
 # Explicit names, no glob: what is not listed is not built.
 duoptic_vulkan_test(stages/vk EVERY_SIZE ASSISTED SLOW)  # each stage with a kernel adds its file
 duoptic_stage(gray VULKAN)
+duoptic_stage(yuv_rgb)
 duoptic_stage(align_time PLAIN)
 target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/stages/align_time/block_flow_ref.cpp)
 duoptic_stage(median VULKAN)
