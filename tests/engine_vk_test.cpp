@@ -151,6 +151,27 @@ TEST(VulkanEngine, CutsTheWindowsOfEachPair) {
   expect_same_frame(*run(*reference, scenes[1].pair), *vulkan->collect(), "whole");
 }
 
+// Also the frame that is under way on the device.
+TEST(VulkanEngine, TheCpuLooksAroundPeople) {
+  const SyntheticPair scene = room();
+  duo::Setup setup = setup_for(scene);
+  setup.matcher = "sgm", setup.preset = "default";
+  const Focus part{{20, 10, 40, 30}, 4, 20};
+  OwnDevice device;
+  const auto reference = prepared(make_ref_engine(), setup), vulkan = prepared(device.engine(), setup);
+  ASSERT_TRUE(vulkan->can_focus());
+  vulkan->submit(scene.pair);
+  vulkan->focus(part);
+  vulkan->submit(scene.pair);
+  EXPECT_STREQ(vulkan->name(), "simd");
+  EXPECT_NE(vulkan->take_event().find("match parts of pictures on a device"), std::string::npos);
+  expect_same_frame(*run(*reference, scene.pair), *vulkan->collect(), "whole");
+  reference->focus(part);
+  const auto want = run(*reference, scene.pair);
+  EXPECT_EQ(want->disparity.d_q4.at(0, 0), Disparity::kNone);
+  expect_same_frame(*want, *vulkan->collect(), "part");
+}
+
 // What stays on the device is there for the two last frames; whoever uses an older one, or one whose engine is gone, is told.
 TEST(VulkanEngine, FramesOnTheDeviceAreThereOrSayThatTheyAreNot) {
   const SyntheticPair scene = room();

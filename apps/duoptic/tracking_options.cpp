@@ -29,9 +29,9 @@ void TrackingOptions::add_to(CLI::App& app) {
       "Fingers, too: 20 joints more of each hand, and how far the tips of thumb and index finger are apart. Looks for\n"
       "both hands in every frame, not in turn");
   app.add_flag("--focus", focus,
-               "Match around people alone, and every 15th frame as a whole: a quarter to a half of the CPU time less, joints "
+               "Match around people alone, and every 16th frame as a whole: a quarter to a half of the CPU time less, joints "
                "like those\n"
-               "of whole frames but not to the bit. Of the tracker body, on the engines simd and ref");
+               "of whole frames but not to the bit. Of the tracker body; the CPU makes the frames");
 }
 
 TrackingOptions TrackingOptions::or_tracker(const char* name) const {

@@ -85,7 +85,8 @@ class Engine {
   virtual void look_at(std::span<const Window> windows) = 0;
   /// From the next submit() on only this window is matched, and in it only these disparities; outside there are none, and
   /// nothing is filled. What is not matched costs nothing; in return values are not those of the whole picture: paths begin at
-  /// the window's border. The same bits on every engine that can_focus(). Takes the place of look_at().
+  /// the window's border. The same bits on every engine that can_focus(); on a device the CPU makes all frames from the first
+  /// call on, until the next prepare(). Takes the place of look_at().
   virtual void focus(const Focus&) {}
   virtual bool can_focus() const { return false; }
   /// Starts work on a pair of the size given to prepare(); the pair must live until its collect() returns.

@@ -20,9 +20,10 @@ FocusPart focus_part(const Focus& focus, Size size, int max_disparity) {
   out.kept = focus.window.within(size);
   DUO_CHECK(!out.kept.empty());
   const int first = std::clamp(focus.disparity_begin, 0, max_disparity - 1);
-  out.disparities =
-      rounded_up(std::clamp(focus.disparity_end, first + 1, max_disparity) - first, kDisparityStep, max_disparity);
-  out.first_disparity = std::min(first, max_disparity - out.disparities);
+  const int end = std::clamp(focus.disparity_end, first + 1, max_disparity);
+  out.disparities = rounded_up(end - first, kDisparityStep, max_disparity);
+  // What more is searched lies behind: without a disparity of its own the background beside a person takes the person's.
+  out.first_disparity = std::max(end - out.disparities, 0);
   Window& matched = out.matched;
   matched.width = rounded_up(out.kept.width, std::max(size.width / 8, 1), size.width);
   matched.height = rounded_up(out.kept.height, std::max(size.height / 4, 1), size.height);
@@ -36,12 +37,12 @@ FocusMaps::FocusMaps(Size size, bool confidence_too)
   if (confidence_too) confidence = Image<std::uint8_t>(size);
 }
 
-void FocusMaps::cut(const FocusPart& part, const Frame& frame) {
+void FocusMaps::cut(const FocusPart& part, const Frame& frame, View<const std::uint8_t> balanced) {
   const Window& window = part.matched;
   const int outside = std::clamp(part.first_disparity - window.x, 0, window.width);  // columns
   for (int y = 0; y < window.height; ++y) {
     const int from = window.y + y, first = window.x + outside - part.first_disparity;
-    const auto copy = [&](const Image<std::uint8_t>& all, int x, int to, Image<std::uint8_t>& out) {
+    const auto copy = [&](View<const std::uint8_t> all, int x, int to, Image<std::uint8_t>& out) {
       if (all.empty())
         std::fill(out.row(y) + to, out.row(y) + window.width, std::uint8_t{255});
       else
@@ -49,9 +50,9 @@ void FocusMaps::cut(const FocusPart& part, const Frame& frame) {
     };
     copy(frame.left, window.x, 0, left);
     copy(frame.left_inside, window.x, 0, left_inside);
-    copy(frame.right, first, outside, right);
+    copy(balanced, first, outside, right);
     copy(frame.right_inside, first, outside, right_inside);
-    std::fill_n(right.row(y), outside, frame.right.at(from, 0));
+    std::fill_n(right.row(y), outside, balanced.at(from, 0));
     std::fill_n(right_inside.row(y), outside, std::uint8_t{0});
   }
 }

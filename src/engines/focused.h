@@ -4,6 +4,7 @@
 #include <list>
 #include <variant>
 
+#include "core/check.h"
 #include "duoptic/engine.h"
 #include "duoptic/frame.h"
 #include "engines/prepared.h"
@@ -31,24 +32,43 @@ struct FocusMaps {
   Image<std::uint16_t> d_q4;
 
   /// Columns left of the right picture are its first one, and not inside.
-  void cut(const FocusPart& part, const Frame& frame);
+  /// `balanced`: the frame's right picture, as it is compared.
+  void cut(const FocusPart& part, const Frame& frame, View<const std::uint8_t> balanced);
   /// Disparity and confidence of the window that is kept; none elsewhere.
   void put(const FocusPart& part, Frame& frame) const;
+};
+
+/// Matchers that can measure a whole pair and then match a part of it.
+template <class M>
+concept MatchesParts = requires(M& matcher, const GrayPair& pair, const Match& match, StageTimer& timer) {
+  matcher.match_measured(pair, matcher.measure(pair, timer), match, timer);
 };
 
 /// Matchers and maps for parts of several sizes, which stay while their sizes come again.
 template <class Matcher>
 class Focused {
  public:
-  /// make(setup, matcher): a matcher for these. Allocates when a part of a new size comes.
+  /// `of_whole`: the matcher of whole pairs, which measures them. make(setup, matcher): a matcher for these. Allocates when a
+  /// part of a new size comes.
   template <class Make>
-  void match(const Prepared& prepared, const Focus& focus, std::uint64_t turn, Make make, StageTimer& timer, Frame& frame) {
+  void match(const Prepared& prepared, const Focus& focus, const GrayPair& whole, Matcher& of_whole, Make make,
+             StageTimer& timer, Frame& frame) {
     const FocusPart part = focus_part(focus, prepared.size, prepared.setup.max_disparity);
     OfSize& at = find(prepared, part, make);
-    at.maps.cut(part, frame);
-    const GrayPair pair{at.maps.left, at.maps.right, at.maps.left_inside, at.maps.right_inside, turn};
-    std::visit([&](auto& matcher) { matcher.match(pair, {at.maps.d_q4, at.maps.confidence}, timer); }, *at.matcher);
+    const auto match_part = [&]<class M>(M& matcher) {
+      if constexpr (MatchesParts<M>) {
+        const Measured measured = matcher.measure(whole, timer);
+        at.maps.cut(part, frame, measured.right);
+        timer.stage("cut");
+        const GrayPair pair{at.maps.left, at.maps.right, at.maps.left_inside, at.maps.right_inside};
+        std::get<M>(*at.matcher).match_measured(pair, measured, {at.maps.d_q4, at.maps.confidence}, timer);
+      } else {
+        DUO_CHECK(!"Engine::can_focus()");
+      }
+    };
+    std::visit(match_part, *of_whole);
     at.maps.put(part, frame);
+    timer.stage("cut");
   }
 
  private:
@@ -68,7 +88,7 @@ class Focused {
     if (sizes_.size() == kMostSizes) sizes_.pop_front();
     OfSize& out = sizes_.emplace_back(size, prepared.setup.wants.confidence);
     out.disparities = part.disparities;
-    make(MatchSetup{size, part.disparities, true, prepared.stream}, out.matcher);
+    make(MatchSetup{size, part.disparities, true}, out.matcher);
     return out;
   }
 

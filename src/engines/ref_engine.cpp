@@ -78,7 +78,7 @@ class RefEngine final : public Engine {
       std::visit([&](auto& matcher) { matcher.match(gray, {disparity.d_q4, frame.confidence, filled_}, timer_); }, *matcher_);
     else
       focused_.match(
-          prepared_, focus_, 0,
+          prepared_, focus_, gray, matcher_,
           [&](const MatchSetup& of_part, Matchers::Ref& out) { Matchers::make(prepared_.matcher, of_part, out); }, timer_,
           frame);
     ref::mark_measured(disparity.d_q4, disparity.origin);

@@ -45,10 +45,10 @@ void SimdFrames::make(const Pair& pair, std::span<const Window> windows, const F
 
   Disparity& disparity = frame.disparity;
   const bool whole = prepared_.match_color || focus.window.within(prepared_.size).empty();
+  GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside, turn};
   if (whole) {
     // What fills a hole may come from anywhere in the picture.
     const RowBand matched = setup.fill ? RowBand{} : RowBand::of(windows, prepared_.size);
-    GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside, turn};
     if (prepared_.match_color) {
       if (!prepared_.color) prepare_color(pair.left, maps != nullptr ? &maps->left : nullptr, left_color_);
       prepare_color(pair.right, maps != nullptr ? &maps->right : nullptr, right_color_);
@@ -59,7 +59,7 @@ void SimdFrames::make(const Pair& pair, std::span<const Window> windows, const F
     std::visit([&](auto& matcher) { matcher.match(gray, found, timer_, matched); }, *matcher_);
   } else {
     focused_.match(
-        prepared_, focus, turn,
+        prepared_, focus, gray, matcher_,
         [&](const MatchSetup& of_part, Matchers::Simd& out) {
           pool_.use(pool_.most());  // it has memory for as many
           Matchers::make(pool_, prepared_.matcher, of_part, out);

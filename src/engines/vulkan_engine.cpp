@@ -79,6 +79,14 @@ class VulkanEngine final : public Engine {
   }
 
   void look_at(std::span<const Window> windows) override { windows_.assign(windows.begin(), windows.end()); }
+  /// What is recorded are whole pictures. Who looks around people gets all frames from the CPU: what a stream of pictures
+  /// settles on must come from the same ones.
+  void focus(const Focus& focus) override {
+    focus_ = focus;
+    if (work_ != nullptr)
+      go_on_with_cpu({ErrorCode::kUnsupported, "match parts of pictures on a device: it has no recordings of them"});
+  }
+  bool can_focus() const override { return !prepared_->match_color; }
 
   void submit(const Pair& pair) override {
     DUO_CHECK(prepared_ != nullptr && count_ < vk::Frames::kInFlight);
@@ -86,6 +94,7 @@ class VulkanEngine final : public Engine {
     const int slot = (first_ + count_++) % slots_;
     pairs_[static_cast<std::size_t>(slot)] = &pair;
     windows_of_[static_cast<std::size_t>(slot)] = windows_;
+    focus_of_[static_cast<std::size_t>(slot)] = focus_;
     if (failed_) go_on_with_cpu(why_failed_);
     if (work_ == nullptr) return;
     had_[static_cast<std::size_t>(slot)].next();
@@ -116,6 +125,7 @@ class VulkanEngine final : public Engine {
       go_on_with_cpu(done.error());
     }
     cpu_->look_at(windows_of_[static_cast<std::size_t>(slot)]);
+    cpu_->focus(focus_of_[static_cast<std::size_t>(slot)]);
     cpu_->submit(pair);
     return cpu_->collect();
   }
@@ -174,11 +184,13 @@ class VulkanEngine final : public Engine {
   int threads_;
   std::unique_ptr<Prepared> prepared_ = std::make_unique<Prepared>();
   std::unique_ptr<vk::Frames> work_;  // after what it refers to
-  std::unique_ptr<Engine> cpu_;       // once the device was lost, and for setups that are none for it
+  std::unique_ptr<Engine> cpu_;       // once the device was lost, for setups that are none for it, and around people
   ObjectPool<DeviceFrame> frames_;
   std::array<const Pair*, vk::Frames::kSlots> pairs_{};  // in flight: count_ of them from first_
   std::vector<Window> windows_;                          // of the next submit
   std::array<std::vector<Window>, vk::Frames::kSlots> windows_of_;
+  Focus focus_;  // of the next submit
+  std::array<Focus, vk::Frames::kSlots> focus_of_;
   int first_ = 0, count_ = 0, slots_ = vk::Frames::kInFlight;
   std::string event_;
   std::shared_ptr<InUse> in_use_ = std::make_shared<InUse>();

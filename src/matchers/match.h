@@ -28,4 +28,11 @@ struct Match {
   View<std::uint16_t> filled = {};
 };
 
+/// What a matcher measures of a whole pair before it matches it, or parts of it: by themselves these would be taken otherwise.
+struct Measured {
+  View<const std::uint8_t> right;  // brought to the left picture's brightness; until the matcher's next pair
+  int noise_q4 = 0;
+  bool clear = false;
+};
+
 }  // namespace duo

@@ -51,7 +51,7 @@ void FocusLine::tell(std::span<const Person> people) {
 Focus FocusLine::next() {
   std::unique_lock lock(mutex_);
   const std::int64_t frame = live_ ? told_ - 1 : asked_ - kBehind;
-  if (asked_++ % kWholeEvery == 0 || frame < 0) return {};
+  if (asked_++ % kWholeEvery == kFirstWhole || frame < 0) return {};
   news_.wait(lock, [&] { return closed_ || told_ > frame; });
   return closed_ ? Focus() : ring_[static_cast<std::size_t>(frame) % ring_.size()];
 }

@@ -19,13 +19,14 @@ namespace duo {
 Focus around(std::span<const Person> people, const Rectified& rectified, double ahead_s);
 
 /// Of files, pair n is matched around the people of frame n - kBehind, whatever the threads; of a live source around those of
-/// the newest frame. Every kWholeEvery-th pair is matched as a whole: people who come in are found there.
+/// the newest frame. Every kWholeEvery-th pair is matched as a whole, from number kFirstWhole on: people who come in are found
+/// there. The tracker body looks for them by their depth in every 8th frame from the fourth on.
 ///
 /// Threads  one that tells, one that asks, and any that closes
 class FocusLine {
  public:
   static constexpr int kBehind = 3;  // as many pairs are on their way while a frame is tracked
-  static constexpr int kWholeEvery = 15;
+  static constexpr int kWholeEvery = 16, kFirstWhole = 4;
   FocusLine(const Rectified& rectified, double frame_s, bool live)
       : rectified_(rectified), ahead_s_(kBehind * frame_s), live_(live) {}
 

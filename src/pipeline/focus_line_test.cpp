@@ -53,16 +53,20 @@ TEST(FocusLine, OfFilesThePairsWaitForTheFrameTheyDependOn) {
   const Person near = with_head_at({0, 0, 1}), far = with_head_at({0, 0, 2});
   for (int n = 0; n < FocusLine::kBehind; ++n) EXPECT_TRUE(line.next().window.empty());
   line.tell({&near, 1});
-  std::thread teller([&] { line.tell({&far, 1}); });
+  std::thread teller([&] {
+    line.tell({&near, 1});
+    line.tell({&far, 1});
+  });
   EXPECT_EQ(line.next(), around({&near, 1}, plain_rig(), FocusLine::kBehind / 30.0));
+  EXPECT_TRUE(line.next().window.empty());  // number 4
   EXPECT_EQ(line.next(), around({&far, 1}, plain_rig(), FocusLine::kBehind / 30.0));
   teller.join();
-  for (int n = FocusLine::kBehind + 2; n < FocusLine::kWholeEvery; ++n) {
+  for (int n = 6; n < FocusLine::kFirstWhole + FocusLine::kWholeEvery; ++n) {
     line.tell({&far, 1});
     EXPECT_FALSE(line.next().window.empty());
   }
   line.tell({&far, 1});
-  EXPECT_TRUE(line.next().window.empty());  // every 15th
+  EXPECT_TRUE(line.next().window.empty());  // number 20
   line.close();
   EXPECT_TRUE(line.next().window.empty());  // would wait
 }

@@ -52,6 +52,9 @@ class Pyramid {
   /// Shape   pair as set up, out the same size
   /// Errors  none, and no allocation but in the reference's stages
   void match(const GrayPair& pair, const Match& out, StageTimer& timer);
+  /// Its first step, and all others, of the pair or of a part of it: `pair.right` is cut from `measured.right`.
+  Measured measure(const GrayPair& pair, StageTimer& timer);
+  void match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer);
 
  private:
   void match_around(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);
@@ -75,6 +78,8 @@ class Pyramid {
   Pyramid(Pool& pool, const PyramidParams& params, const MatchSetup& setup);
   /// The same in all rows, whichever are asked for: coarse levels see far.
   void match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows = {});
+  Measured measure(const GrayPair& pair, StageTimer& timer);
+  void match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer);
 
  private:
   void match_around(const GrayPair& pair, View<std::uint16_t> d_q4, StageTimer& timer);

@@ -16,13 +16,21 @@ Pyramid::Pyramid(const PyramidParams& params, const MatchSetup& setup)
       filtered_(setup.size),
       balanced_(params.balance != 0 ? setup.size : Size{}) {}
 
-void Pyramid::match(const GrayPair& raw, const Match& out, StageTimer& timer) {
-  GrayPair pair = raw;
-  if (params_.balance != 0) {
-    ref::balance(raw, levels_[0].max_disparity, 0, balanced_);
-    pair.right = balanced_;
-    timer.stage("balance");
-  }
+void Pyramid::match(const GrayPair& pair, const Match& out, StageTimer& timer) {
+  const Measured measured = measure(pair, timer);
+  GrayPair balanced = pair;
+  balanced.right = measured.right;
+  match_measured(balanced, measured, out, timer);
+}
+
+Measured Pyramid::measure(const GrayPair& pair, StageTimer& timer) {
+  if (params_.balance == 0) return {pair.right};
+  ref::balance(pair, levels_[0].max_disparity, 0, balanced_);
+  timer.stage("balance");
+  return {balanced_};
+}
+
+void Pyramid::match_measured(const GrayPair& pair, const Measured&, const Match& out, StageTimer& timer) {
   for (int i = 1; i < params_.levels; ++i) {
     const GrayPair finer = pair_of(pair, i - 1);
     PyramidLevel& level = levels_[static_cast<std::size_t>(i)];

@@ -25,13 +25,21 @@ Pyramid::Pyramid(Pool& pool, const PyramidParams& params, const MatchSetup& setu
       tiles_scratch_.emplace_back(level.size, level.max_disparity, pool.threads());
 }
 
-void Pyramid::match(const GrayPair& raw, const Match& out, StageTimer& timer, RowBand) {
-  GrayPair pair = raw;
-  if (params_.balance != 0) {
-    simd::balance(pool_, raw, levels_[0].max_disparity, 0, balance_scratch_, balanced_);
-    pair.right = balanced_;
-    timer.stage("balance");
-  }
+void Pyramid::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand) {
+  const Measured measured = measure(pair, timer);
+  GrayPair balanced = pair;
+  balanced.right = measured.right;
+  match_measured(balanced, measured, out, timer);
+}
+
+Measured Pyramid::measure(const GrayPair& pair, StageTimer& timer) {
+  if (params_.balance == 0) return {pair.right};
+  simd::balance(pool_, pair, levels_[0].max_disparity, 0, balance_scratch_, balanced_);
+  timer.stage("balance");
+  return {balanced_};
+}
+
+void Pyramid::match_measured(const GrayPair& pair, const Measured&, const Match& out, StageTimer& timer) {
   for (int i = 1; i < params_.levels; ++i) {
     const GrayPair finer = pair_of(pair, i - 1);
     PyramidLevel& level = levels_[static_cast<std::size_t>(i)];

@@ -42,6 +42,9 @@ class Sgm {
   ///
   /// `clear`: how the pair is matched where that has been settled; else its stream settles it
   void match(const GrayPair& pair, const Match& out, StageTimer& timer, std::optional<bool> clear = {});
+  /// Its first step, and all others, of the pair or of a part of it: `pair.right` is cut from `measured.right`.
+  Measured measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear = {});
+  void match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer);
   /// Of the last pair: what was compared, and whether as clear pictures.
   SemiGlobal compared() const { return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global()}; }
   bool clear() const { return clear_; }
@@ -64,6 +67,8 @@ class Sgm {
   Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup);
   /// The same in `rows`; none in all others. Saves most of what these would take.
   void match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows = {}, std::optional<bool> clear = {});
+  Measured measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear = {});
+  void match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer, RowBand rows = {});
   SemiGlobal compared() const { return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global()}; }
   bool clear() const { return clear_; }
 

@@ -18,12 +18,25 @@ Sgm::Sgm(const SgmParams& params, const MatchSetup& setup)
       right_(setup.size, 0) {}
 
 void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, std::optional<bool> clear) {
-  const int measured_q4 = ref::noise_q4(pair.left, pair.right), noise_q4 = params_.soften != 0 ? measured_q4 : 0;
+  const Measured measured = measure(pair, timer, clear);
+  GrayPair balanced = pair;
+  balanced.right = measured.right;
+  match_measured(balanced, measured, out, timer);
+}
+
+Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear) {
+  const int noise_q4 = ref::noise_q4(pair.left, pair.right);
   timer.stage("noise");
-  clear_ = clear ? *clear : stream_->next(pair.turn, looks_clear(params_, measured_q4, ref::blur_q4(pair.left, pair.right)));
+  clear_ = clear ? *clear : stream_->next(pair.turn, looks_clear(params_, noise_q4, ref::blur_q4(pair.left, pair.right)));
   timer.stage("blur");
   ref::balance(pair, max_disparity_, clear_ ? kClearUnbalanced : 0, maps_.balanced);
   timer.stage("balance");
+  return {maps_.balanced, noise_q4, clear_};
+}
+
+void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer) {
+  const int noise_q4 = params_.soften != 0 ? measured.noise_q4 : 0;
+  clear_ = measured.clear;
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
     if (noise_q4 > 0) ref::bilateral(gray, bilateral_range(noise_q4), maps_.softened);
     timer.stage("bilateral");
@@ -31,7 +44,7 @@ void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, std::
     timer.stage("match_planes");
   };
   planes(pair.left, pair.left_inside, left_);
-  planes(maps_.balanced, pair.right_inside, right_);
+  planes(pair.right, pair.right_inside, right_);
   const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, params_.semi_global()};
   ref::semi_global(in, {maps_.left_winner, maps_.right_winner, maps_.fine, out.confidence});
   timer.stage("semi_global");

@@ -26,6 +26,26 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
       smooth_scratch_(setup.size) {}
 
 void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows, std::optional<bool> clear) {
+  const Measured measured = measure(pair, timer, clear);
+  GrayPair balanced = pair;
+  balanced.right = measured.right;
+  match_measured(balanced, measured, out, timer, rows);
+}
+
+Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear) {
+  const int noise_q4 = simd::noise_q4(pool_, pair.left, pair.right);
+  timer.stage("noise");
+  clear_ =
+      clear ? *clear : stream_->next(pair.turn, looks_clear(params_, noise_q4, simd::blur_q4(pool_, pair.left, pair.right)));
+  timer.stage("blur");
+  simd::balance(pool_, pair, max_disparity_, clear_ ? kClearUnbalanced : 0, balance_scratch_, maps_.balanced);
+  timer.stage("balance");
+  return {maps_.balanced, noise_q4, clear_};
+}
+
+void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer, RowBand rows) {
+  const int noise_q4 = params_.soften != 0 ? measured.noise_q4 : 0;
+  clear_ = measured.clear;
   // What the result depends on: taps of the median; islands, which are smaller than `speckle` pixels where they matter; paths
   // from above, and with paths from below the whole picture.
   const int h = pair.size().height;
@@ -33,13 +53,6 @@ void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBa
   const RowBand checked_rows = params_.smooth != 0 ? rows.grown(WeightedMedian::kRadius, h) : rows;
   const RowBand joined = checked_rows.grown(params_.speckle, h);
   const int plane_rows = params_.semi_global().upward ? h : joined.end;
-  const int measured_q4 = simd::noise_q4(pool_, pair.left, pair.right), noise_q4 = params_.soften != 0 ? measured_q4 : 0;
-  timer.stage("noise");
-  clear_ =
-      clear ? *clear : stream_->next(pair.turn, looks_clear(params_, measured_q4, simd::blur_q4(pool_, pair.left, pair.right)));
-  timer.stage("blur");
-  simd::balance(pool_, pair, max_disparity_, clear_ ? kClearUnbalanced : 0, balance_scratch_, maps_.balanced);
-  timer.stage("balance");
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
     if (noise_q4 > 0) simd::bilateral(pool_, gray, bilateral_range(noise_q4), maps_.softened);
     timer.stage("bilateral");
@@ -48,7 +61,7 @@ void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBa
     timer.stage("match_planes");
   };
   planes(pair.left, pair.left_inside, left_);
-  planes(maps_.balanced, pair.right_inside, right_);
+  planes(pair.right, pair.right_inside, right_);
   const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, params_.semi_global(), joined};
   simd::semi_global(pool_, in, scratch_, {maps_.left_winner, maps_.right_winner, maps_.fine, out.confidence});
   timer.stage("semi_global");
