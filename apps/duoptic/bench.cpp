@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "bench_chain.h"
 #include "bench_device.h"
 #include "bench_networks.h"
 #include "command.h"
@@ -34,13 +35,18 @@ constexpr char kFooter[] =
     "the "
     "best\n"
     "instructions of the processor; the ratio is its wall time by ours. \"one thread\":\n"
-    "how many times faster than on one thread.\n\n"
+    "how many times faster than on one thread.\n"
+    "With --clip: the whole way from two videos to joints, and nothing else. A table of CPU time and bytes a frame, part by "
+    "part;\n"
+    "below it duoptic track. A clip is a folder with left.avi, right.avi and calibration_truth.yml, as duoptic synth writes "
+    "it.\n\n"
     "Examples:\n"
     "  duoptic bench\n"
     "  duoptic bench --engine simd --size 640x480 --repeat 31 --json\n"
     "  duoptic bench --engine simd --instructions AVX2\n"
     "  duoptic bench --what networks\n"
-    "  duoptic bench --engine vulkan";
+    "  duoptic bench --engine vulkan\n"
+    "  duoptic bench --clip clip --repeat 3 --instructions AVX2";
 
 constexpr int kMaxDisparity = 128;
 // What a whole frame does beside matching.
@@ -48,8 +54,9 @@ const std::set<std::string> kNotMatching = {"gray", "median", "gaussian", "recti
 
 struct Options {
   std::string what = "all", engine = "both", size = "both", instructions;
+  std::vector<std::string> clips;
   int repeat = 11;
-  bool fine = false, json = false;
+  bool fine = false, focus = false, json = false;
 };
 
 struct Contestant {
@@ -230,6 +237,12 @@ Result<Exit> run(const Options& options) {
   Interrupt::end_at_once();
   if (!options.instructions.empty()) DUO_TRY(limit_instructions(options.instructions));
   nlohmann::json out = nlohmann::json::array();
+  if (!options.clips.empty()) {
+    const std::string engine = options.engine == "both" ? "simd" : options.engine;
+    DUO_TRY_ASSIGN(out, bench_chain::tables({options.clips, engine, options.focus, options.repeat, options.json}));
+    if (options.json) fmt::print("{}\n", out.dump(2));
+    return Exit::kOk;
+  }
   for (const Size size : {Size{640, 480}, Size{1280, 720}}) {
     if (options.what == "networks") break;
     if (options.size != "both" && options.size != fmt::format("{}x{}", size.width, size.height)) continue;
@@ -285,6 +298,11 @@ Command add(CLI::App& app) {
       ->type_name("N")
       ->check(within(1, 1000))
       ->capture_default_str();
+  CLI::Option* clip =
+      sub->add_option("--clip", options->clips, "The whole way from the two videos of a clip to joints, part by part")
+          ->type_name("DIR")
+          ->allow_extra_args(false);
+  sub->add_flag("--focus", options->focus, "Of --clip: match around people alone, as duoptic track --focus does")->needs(clip);
   sub->add_flag("--fine", options->fine, "With the matcher fine of engine simd, too: seconds a frame");
   sub->add_flag("--json", options->json, "Print it as JSON");
   sub->footer(kFooter);

@@ -46,6 +46,7 @@ struct Options {
   std::int64_t at_frame = 0;
   InputOptions input;
   RigCheck check = RigCheck::kTell;
+  double budget_percent = 0;
   bool force = false, stats = false, quiet = false, realtime = false;
   TrackingOptions tracking;
   SinkOptions sinks;
@@ -161,6 +162,9 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, rig, options.input));
   if (!input.rig) throw CLI::RequiredError("--rig");  // most sources do not bring their own
   if (options.realtime && !input.pairs->live()) input.pairs = in_real_time(std::move(input.pairs));
+  if (options.budget_percent > 0 && !input.pairs->live())
+    throw CLI::ValidationError("--budget",
+                               "files are tracked as fast as can be, and no pair of theirs is left out; add --realtime");
   const RecorderSetup to_record{.frame_s = input.pairs->frame_s(),
                                 .rig = input.rig,
                                 .date = input.pairs->live() ? date_now() : "",
@@ -171,6 +175,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   setup.first = options.at_frame;
   setup.tell_times = options.stats;
   setup.check = options.check;
+  setup.budget_percent = options.budget_percent;
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
   if (!options.record.empty()) DUO_TRY(pipeline.record(options.record, to_record));
   if (pipeline.live()) Interrupt::is_the_end();
@@ -222,6 +227,12 @@ Command add(CLI::App& app) {
   sub->add_flag("--force", options->force, "Replace an earlier recording of that name")->needs(record);
   sub->add_flag("--realtime", options->realtime,
                 "Take files at the pace of their capture times, as if live: late pairs are dropped");
+  sub->add_option(
+         "--budget", options->budget_percent,
+         "Of live sources: take no more CPU time than this, 100 being one core; pairs are left out for it, and counted\n"
+         "as dropped, but one a second")
+      ->type_name("PERCENT")
+      ->check(within(1.0, 100'000.0));
   add_strict_option(*sub, options->check);
   options->tracking.add_to(*sub);
   sub->add_flag("--stats", options->stats, "Add times to each line and print a summary of them on stderr");

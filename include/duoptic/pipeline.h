@@ -38,8 +38,11 @@ struct PipelineSetup {
   std::int64_t first = 0;                   // pairs before this number are passed over
   std::int64_t every = 1;                   // and of those from there on, all but every N-th
   bool focus = false;                       // frames are matched around the people of frames before, and nowhere else; every
-                                            // 15th as a whole. Of a tracker that needs no more, on engines that can_focus()
-  bool tell_times = false;                  // to the sinks: times differ from run to run
+                                            // 16th as a whole. Of a tracker that needs no more, on engines that can_focus()
+  double budget_percent = 0;                // of a live source: pairs are left out so that the process takes no more CPU time
+                                            // than this, 100 being one core; 0: no limit
+  bool in_turn = false;     // what runs in threads side by side runs in the caller's, in turn: to measure what each part costs
+  bool tell_times = false;  // to the sinks: times differ from run to run
   RigCheck check = RigCheck::kNone;
 };
 
@@ -146,7 +149,7 @@ class Pipeline {
   bool still() const;
   std::int64_t count() const;    // pairs of the source; 0: not known
   std::int64_t read() const;     // pairs of the source, before its end
-  std::int64_t dropped() const;  // pairs of a live source that nobody took in time
+  std::int64_t dropped() const;  // pairs of a live source that nobody took in time, or that were left out for the budget
   std::string warning() const;   // PairSource::warning()
 
  private:

@@ -46,6 +46,7 @@ struct TrackerSetup {
   int threads = 1;                          // that the tracker may use; the result does not depend on them
   bool live = false;                        // a result that comes late is worth less
   BodyModel body_model = BodyModel::kFull;  // of trackers that have networks
+  bool time_stages = false;
 };
 
 /// Follows persons through frames that have what the tracker wants.
@@ -71,7 +72,8 @@ class Tracker {
   /// The persons in this frame. Valid until the next call.
   virtual std::span<const Person> track(const Frame& frame) = 0;
   virtual void reset() = 0;
-  /// Device times of the last select() or track(), where the engine times stages; the list ends at the first wall_ns of 0.
+  /// Times of the last track(), and of trackers on a device of select(), where stages are timed; the list ends at the first
+  /// wall_ns of 0.
   virtual std::span<const StageTime> stages() const { return {}; }
 };
 

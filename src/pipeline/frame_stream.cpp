@@ -27,6 +27,7 @@ FrameStream::FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int
       engine_(engine),
       focus_(focus),
       choice_(choice),
+      budget_(source_->live() ? choice.cores : 0),
       pool_(pairs_in_engine(*source_, at_once) + kPairsOutside, [] { return Pair(); }),
       read_(passed.pairs),
       start_ns_(passed.start_ns),
@@ -100,7 +101,10 @@ Result<Next> FrameStream::choose_pair(std::shared_ptr<Pair>& into) {
     if (next != Next::kNew) return next;
     if (read_ == 0) start_ns_ = into->left.t_ns;
     const std::int64_t from_first = read_++ - choice_.first;
-    if (from_first >= 0 && from_first % choice_.every == 0) return Next::kNew;
+    if (from_first >= 0 && from_first % choice_.every == 0) {
+      if (budget_.allows(wall_ns(), cpu_ns())) return Next::kNew;
+      ++left_out_;
+    }
     if (from_first + 1 >= 0 && (from_first + 1) % choice_.every == 0) {
       align_.remember(*into);
       if (!source_->live()) before_ = into;

@@ -14,6 +14,7 @@
 #include "duoptic/engine.h"
 #include "duoptic/source.h"
 #include "duoptic/worker.h"
+#include "pipeline/cpu_budget.h"
 #include "pipeline/focus_line.h"
 #include "stages/align_time/align_time.h"
 
@@ -36,9 +37,11 @@ struct Matched {
 /// pair when the engine is free. One frame waits for who takes it; meanwhile matching rests.
 class FrameStream {
  public:
-  /// Pairs before number `first` are passed over, and of those from there on all but every `every`-th.
+  /// Pairs before number `first` are passed over, and of those from there on all but every `every`-th; of a live source also
+  /// those that would take more CPU time per wall time than `cores`, where that is not 0.
   struct Choice {
     std::int64_t first = 0, every = 1;
+    double cores = 0;
   };
   /// What the source gave already.
   struct Passed {
@@ -70,8 +73,9 @@ class FrameStream {
   Result<void> prepare(const Setup& setup, Matched& last);
 
   const PairSource& source() const { return *source_; }
-  TimeNs start_ns() const { return start_ns_; }  // of the source's first pair, once next() gave one
-  std::int64_t read() const { return read_; }    // pairs of the source, before its end
+  TimeNs start_ns() const { return start_ns_; }        // of the source's first pair, once next() gave one
+  std::int64_t read() const { return read_; }          // pairs of the source, before its end
+  std::int64_t left_out() const { return left_out_; }  // of them, for Choice::cores
 
  private:
   Result<void> read_all();
@@ -94,9 +98,10 @@ class FrameStream {
   Engine* const engine_;
   FocusLine* const focus_;
   const Choice choice_;
+  CpuBudget budget_;
   ObjectPool<Pair> pool_;
   ref::AlignTime align_;
-  std::atomic<std::int64_t> read_ = 0;
+  std::atomic<std::int64_t> read_ = 0, left_out_ = 0;
   std::atomic<TimeNs> start_ns_ = 0;
   std::int64_t pairs_read_ = 0;               // of whichever thread reads
   std::shared_ptr<Pair> before_;              // of files, the pair before the one that is aligned

@@ -94,6 +94,7 @@ Result<void> Pipeline::State::prepare() {
   if (setup.threads <= 0) setup.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   DUO_TRY_ASSIGN(engine, make_engine(setup.engine, setup.threads));
   DUO_TRY(engine->prepare(of_engine));
+  if (setup.focus && engine->can_focus()) engine->focus({});  // from the first frame on
   header.engine = engine->name();
   header.device = engine->device();
   header.matcher = of_engine.matcher;
@@ -117,7 +118,8 @@ Result<void> Pipeline::State::prepare_tracker() {
   // The engine makes the next frame on all threads meanwhile: a layer of a network that is shared by as many would wait for
   // them.
   const int threads = std::max(1, setup.threads / 2);
-  return tracker->prepare({*setup.frames.rig, header.rectified, header.frame_s, threads, header.live, setup.body_model});
+  return tracker->prepare(
+      {*setup.frames.rig, header.rectified, header.frame_s, threads, header.live, setup.body_model, setup.frames.time_stages});
 }
 
 /// Of files: what lies before the first wanted pair. The rig is judged by the first second and frames are aligned by the pair
@@ -155,8 +157,9 @@ Result<void> Pipeline::State::start() {
   auto tapped = std::make_unique<Tap>(std::move(waiting), recording);
   tap = tapped.get();
   frames = std::make_unique<FrameStream>(std::move(tapped), engine.get(), at_once,
-                                         FrameStream::Choice{setup.first, setup.every}, std::move(passed), focus.get());
-  frames->start();
+                                         FrameStream::Choice{setup.first, setup.every, setup.budget_percent / 100},
+                                         std::move(passed), focus.get());
+  if (!setup.in_turn) frames->start();
   return {};
 }
 
@@ -355,7 +358,9 @@ bool Pipeline::live() const { return state_->header.live; }
 bool Pipeline::still() const { return state_->source().still(); }
 std::int64_t Pipeline::count() const { return state_->source().count(); }
 std::int64_t Pipeline::read() const { return state_->frames ? state_->frames->read() : 0; }
-std::int64_t Pipeline::dropped() const { return state_->source().dropped(); }
+std::int64_t Pipeline::dropped() const {
+  return state_->source().dropped() + (state_->frames ? state_->frames->left_out() : 0);
+}
 std::string Pipeline::warning() const { return state_->source().warning(); }
 
 }  // namespace duo

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "duoptic/rig.h"
@@ -162,6 +164,19 @@ TEST_F(Track, CutVideoKeepsItsWholeFrames) {
   EXPECT_LT(all.size(), 1u + kPairs);
 }
 
+TEST_F(Track, ABudgetLeavesPairsOut) {
+  const std::string track = "track left.mp4 right.mp4 --rig rig.json" + std::string(kSelect);
+  // A hundredth of a core pays for one frame of 0.2 s.
+  const Ended ended = run(track + "--realtime --budget 1 --stats -o budget.jsonl");
+  EXPECT_EQ(ended.exit, 0) << ended.err;
+  const auto kept = lines(bytes_of(at("budget.jsonl"))).size() - 1;
+  EXPECT_GE(kept, 1u);
+  EXPECT_LT(kept, std::size_t{kPairs});
+  EXPECT_NE(ended.err.find(" dropped"), std::string::npos) << ended.err;
+  expect_failure(track + "--budget 50", kUsage, "add --realtime");
+  expect_failure(track + "--realtime --budget 0", kUsage, "--budget");
+}
+
 TEST_F(Track, ClipsOfDifferentLengthGiveAWarning) {
   const Ended ended = run("track left.mp4 short.mp4 --rig rig.json -o short.jsonl" + std::string(kSelect));
   EXPECT_EQ(ended.exit, 0) << ended.err;
@@ -214,6 +229,43 @@ TEST_F(Track, BadOutputs) {
   // A quota of 4 blocks of 512 bytes: neither file fits.
   expect_failure(track, kOutput, "out.", "ulimit -f 4;");
   EXPECT_EQ(run(track + ">/dev/full 2>stderr.txt; exit $?").exit, kOutput);
+}
+
+/// What each part of the way costs; what is written is what track writes.
+TEST_F(Track, BenchOfAClip) {
+  fs::create_directories(at("timed"));
+  for (const char* side : {"left", "right"})
+    fs::copy_file(at(std::string(side) + ".mp4"), at("timed") / (std::string(side) + ".avi"));
+  fs::copy_file(at("rig.json"), at("timed/calibration_truth.yml"));
+  ASSERT_EQ(run("track timed/left.avi timed/right.avi --rig rig.json --engine simd --quiet -o timed.jsonl").exit, 0);
+  const Ended ended = run("bench --clip timed --repeat 2 --json");
+  ASSERT_EQ(ended.exit, 0) << ended.err;
+  const auto tables = nlohmann::json::parse(ended.out, nullptr, false);
+  ASSERT_EQ(tables.size(), 1u) << ended.out;
+  const auto& table = tables[0];
+  EXPECT_EQ(table["frames"], kPairs);
+  std::map<std::string, nlohmann::json> parts;
+  for (const auto& part : table["parts"]) parts[part["part"]] = part;
+  for (const char* name : {"decode", "engine", "tracker", "lines", "other"}) ASSERT_TRUE(parts.contains(name)) << name;
+  EXPECT_EQ(parts["decode"]["bytes"], 2 * 3 * 320 * 240);
+  EXPECT_DOUBLE_EQ(parts["lines"]["bytes"].get<double>() * kPairs, static_cast<double>(fs::file_size(at("timed.jsonl"))));
+  double stages_ms = 0;
+  std::set<std::string> names;
+  for (const auto& stage : parts["engine"]["stages"]) {
+    stages_ms += stage["cpu_ms"].get<double>();
+    names.insert(stage["stage"]);
+  }
+  EXPECT_TRUE(names.contains("rectify") && names.contains("semi_global"));
+  EXPECT_GT(stages_ms, 0);
+  EXPECT_EQ(parts["tracker"]["stages"].size(), 3u);
+  ASSERT_EQ(table["track"].size(), 2u);
+  for (const auto& track : table["track"]) EXPECT_GT(track["frames_per_s"], 0);
+
+  const Ended plain = run("bench --clip timed --repeat 1 --focus");
+  EXPECT_EQ(plain.exit, 0) << plain.err;
+  for (const char* word : {"around people", "decode", "  semi_global", "track, 2 threads"})
+    EXPECT_NE(plain.out.find(word), std::string::npos) << word;
+  EXPECT_EQ(run("bench --clip nowhere").exit, kInput);
 }
 
 /// The clip of the room with a truth as if the three clicks were joints at 3 m.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/check.h"
+#include "core/clock.h"
 #include "core/lens.h"
 #include "detectors/small_hands.h"
 #include "duoptic/detector.h"
@@ -37,6 +38,7 @@ class BodyTracker final : public Tracker {
   Result<std::span<const Person>> select(const Frame& frame, std::span<const Selection> selections) override;
   std::span<const Person> track(const Frame& frame) override;
   void reset() override;
+  std::span<const StageTime> stages() const override { return times_; }
 
  private:
   struct Tracked {
@@ -94,6 +96,8 @@ class BodyTracker final : public Tracker {
   std::vector<Look> looks_;
   std::vector<SeenHand> hands_;
   std::vector<Person> people_;
+  StageTimer timer_;
+  StageTimer::Times times_{};
   std::uint32_t next_id_ = 1;
   std::int64_t frame_ = 0;
 };
@@ -268,11 +272,14 @@ void BodyTracker::look_at_hands() {
 
 std::span<const Person> BodyTracker::track(const Frame& frame) {
   DUO_CHECK(finder_ != nullptr);
+  timer_.start(times_, setup_.time_stages);
   const View<const Rgb8> picture = margin_.fill(frame.color);
   const body::FrameView view{{frame.disparity.d_q4, &setup_.rectified}, picture, setup_.frame_s, setup_.body_model, {}};
   uncover(view);
+  timer_.stage("fit");
   look_elsewhere(view);
   const std::span<const SeenPerson> seen = finder_->follow(picture, regions_);
+  timer_.stage("bodies");
   match(view, seen);
   for (std::size_t i = 0; i < seen.size() && tracked_.size() < kMostPeople; ++i) {
     if (owners_[i] != nullptr || is_of_another(view, seen, i)) continue;
@@ -281,8 +288,11 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
       owners_[i] = &tracked_.back();
     }
   }
+  timer_.stage("fit");
   gather(view, seen);
+  timer_.stage("bodies");
   look_at_hands();
+  timer_.stage("hands");
   // The nearest first: what is behind them is theirs to hide.
   nearer_.clear();
   for (const Sight& sight : sights_) {
@@ -300,6 +310,7 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
     }
   forget();
   publish(view);
+  timer_.stage("fit");
   ++frame_;
   return people_;
 }
