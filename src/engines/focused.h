@@ -56,14 +56,13 @@ class Focused {
     const FocusPart part = focus_part(focus, prepared.size, prepared.setup.max_disparity);
     OfSize& at = find(prepared, part, make);
     const auto match_part = [&]<class M>(M& matcher) {
+      DUO_CHECK(MatchesParts<M>);  // as Engine::can_focus() says
       if constexpr (MatchesParts<M>) {
         const Measured measured = matcher.measure(whole, timer);
         at.maps.cut(part, frame, measured.right);
         timer.stage("cut");
         const GrayPair pair{at.maps.left, at.maps.right, at.maps.left_inside, at.maps.right_inside};
         std::get<M>(*at.matcher).match_measured(pair, measured, {at.maps.d_q4, at.maps.confidence}, timer);
-      } else {
-        DUO_CHECK(!"Engine::can_focus()");
       }
     };
     std::visit(match_part, *of_whole);
