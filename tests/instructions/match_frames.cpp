@@ -1,5 +1,5 @@
-// match_frames MATCHER FRAMES: one thread matches the synthetic room so many times. Run under callgrind by
-// count_instructions.sh, which counts what comes after the first frame.
+// match_frames MATCHER FRAMES: one thread matches the synthetic room so many times; MATCHER+focus: the middle quarter of it. Run
+// under callgrind by count_instructions.sh, which counts what comes after the first frame.
 #if __has_include(<valgrind/callgrind.h>)
 #include <valgrind/callgrind.h>
 #else  // then there is no valgrind to count with, and the script says so
@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 
 #include "duoptic/engine.h"
 #include "duoptic/synthetic.h"
@@ -29,10 +30,12 @@ int main(int argc, char** argv) {
   auto engine = duo::make_engine("simd", 1);
   duo::Setup setup;
   setup.size = room.size;
-  setup.matcher = argv[1];
+  const std::string name = argv[1];
+  setup.matcher = name.substr(0, name.find('+'));
   setup.max_disparity = 64;
   setup.fill = true;
   if (!engine || !(*engine)->prepare(setup)) return 1;
+  if (name.ends_with("+focus")) (*engine)->focus({{40, 30, 80, 60}, 0, 64});
   unsigned sum = 0;
   const auto frame = [&] {
     (*engine)->submit(scene.pair);
