@@ -28,6 +28,8 @@ class MirroredPair {
   Image<Rgb8> left_color_, right_color_;
 };
 
+inline constexpr int kFineMedian = 4;  // px, radius of the median of what was measured
+
 /// The maps between the stages of one frame.
 struct FineMaps {
   Disparity whole;  // of sgm, filled; later of the left view, filled
@@ -111,6 +113,7 @@ class Fine {
   SlantedPlanesScratch planes_scratch_;
   FillRegionsScratch regions_scratch_;
   SpeckleScratch speckle_scratch_;
+  LucasKanadeScratch last_scratch_;
 };
 
 }  // namespace simd

@@ -4,6 +4,7 @@
 #include "matchers/fine/fine.h"
 #include "stages/color_median/color_median.h"
 #include "stages/fill/fill.h"
+#include "stages/lucas_kanade/lucas_kanade.h"
 #include "stages/slanted_planes/plane_fit.h"
 
 namespace duo::simd {
@@ -21,7 +22,8 @@ Fine::Fine(Pool& pool, const FineParams& params, const MatchSetup& setup)
       energies_scratch_(setup.size, setup.max_disparity, pool.most()),
       planes_scratch_(setup.size),
       regions_scratch_(setup.size),
-      speckle_scratch_(setup.size) {}
+      speckle_scratch_(setup.size),
+      last_scratch_(setup.size, pool.most()) {}
 
 void Fine::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand) {
   DUO_CHECK(pair.left_color.size() == pair.size() && pair.right_color.size() == pair.size());
@@ -31,7 +33,13 @@ void Fine::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowB
   const View<std::uint16_t> checked = params_.smooth != 0 ? maps_.median.view() : out.d_q4;
   check_planes(pair, maps_.left, maps_.mirrored, params_.tolerance, checked);
   simd::remove_speckle(pool_, checked, SgmParams{}.speckle_step_q4, params_.speckle, speckle_scratch_);
-  if (params_.smooth != 0) simd::color_median(pool_, {checked, pair.left_color}, out.d_q4);
+  if (params_.smooth != 0) simd::color_median(pool_, {checked, pair.left_color, {}, kFineMedian}, out.d_q4);
+  if (!sgm_.clear()) {
+    const SemiGlobal compared = sgm_.compared();
+    for (int y = 0; y < out.d_q4.height(); ++y) std::copy_n(out.d_q4.row(y), out.d_q4.width(), maps_.unfilled.row(y));
+    simd::lucas_kanade(pool_, {compared.left.value[0], compared.right.value[0], maps_.unfilled, max_disparity_}, last_scratch_,
+                       out.d_q4);
+  }
   stages.end("check_planes", 10);
   if (out.filled.empty()) return;
   for (int y = 0; y < out.d_q4.height(); ++y) std::copy_n(out.d_q4.row(y), out.d_q4.width(), maps_.whole.d_q4.row(y));

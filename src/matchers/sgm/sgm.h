@@ -8,6 +8,7 @@
 #include "matchers/match.h"
 #include "matchers/sgm/sgm_params.h"
 #include "stages/balance/balance.h"
+#include "stages/lucas_kanade/lucas_kanade.h"
 #include "stages/speckle/speckle.h"
 #include "stages/types/gray_pair.h"
 #include "stages/types/match_planes.h"
@@ -84,6 +85,7 @@ class Sgm {
   SemiGlobalScratch scratch_;
   SpeckleScratch speckle_scratch_;
   WeightedMedianScratch smooth_scratch_;
+  LucasKanadeScratch refine_scratch_;
 };
 
 }  // namespace simd

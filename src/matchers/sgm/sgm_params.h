@@ -21,6 +21,7 @@ struct SgmParams {
   int speckle = 60;
   int speckle_step_q4 = 16;
   int smooth = 1;
+  int refine = 1;
 
   static constexpr int kMaxDisparity = 256;
   SemiGlobalParams semi_global() const;
@@ -44,6 +45,8 @@ inline constexpr Parameter<SgmParams> kSgmParameters[] = {
     {"speckle", &SgmParams::speckle, "px", 0, 10000, "islands of fewer pixels are removed"},
     {"speckle-step", &SgmParams::speckle_step_q4, "px/16", 1, 256, "neighbours within this difference are one island"},
     {"smooth", &SgmParams::smooth, "", 0, 1, "weighted median guided by the picture: 1 on, 0 off"},
+    {"refine", &SgmParams::refine, "", 0, 1,
+     "last fraction of a pixel by gray gradients, in pictures that are not clear: 1 on, 0 off"},
 };
 
 inline constexpr std::string_view kSgmPresets[] = {"default", "paths8"};

@@ -4,6 +4,7 @@
 #include "stages/bilateral/bilateral.h"
 #include "stages/blur/blur.h"
 #include "stages/check_left_right/check_left_right.h"
+#include "stages/lucas_kanade/lucas_kanade.h"
 #include "stages/match_planes/match_planes.h"
 #include "stages/noise/noise.h"
 
@@ -48,17 +49,21 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const M
   const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, params_.semi_global()};
   ref::semi_global(in, {maps_.left_winner, maps_.right_winner, maps_.fine, out.confidence});
   timer.stage("semi_global");
-  // The weighted median writes to another image than it reads: the check stays in the one from which it ends in d_q4.
-  const View<std::uint16_t> checked = params_.smooth != 0 ? maps_.fine.view() : out.d_q4;
+  // What follows the check writes to another image than it reads: the check stays in the one from which it ends in d_q4.
+  const bool refine = params_.refine != 0 && !clear_;
+  const View<std::uint16_t> smoothed = refine ? maps_.fine.view() : out.d_q4, before = refine ? out.d_q4 : maps_.fine.view(),
+                            checked = params_.smooth != 0 ? before : smoothed;
   ref::check_left_right(
       {maps_.left_winner, maps_.right_winner, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach},
       maps_.fine, checked);
   timer.stage("check_left_right");
   ref::remove_speckle(checked, params_.speckle_step_q4, params_.speckle);
   timer.stage("speckle");
-  if (params_.smooth != 0) ref::weighted_median({checked, in.left.value[0]}, out.d_q4);
-  if (!out.confidence.empty()) keep_confidence(out.d_q4, out.confidence);
+  if (params_.smooth != 0) ref::weighted_median({checked, in.left.value[0]}, smoothed);
   timer.stage("weighted_median");
+  if (refine) ref::lucas_kanade({in.left.value[0], in.right.value[0], smoothed, max_disparity_}, out.d_q4);
+  if (!out.confidence.empty()) keep_confidence(out.d_q4, out.confidence);
+  timer.stage("lucas_kanade");
 }
 
 }  // namespace duo::ref

@@ -6,6 +6,7 @@
 #include "stages/bilateral/bilateral.h"
 #include "stages/blur/blur.h"
 #include "stages/check_left_right/check_left_right.h"
+#include "stages/lucas_kanade/lucas_kanade.h"
 #include "stages/match_planes/match_planes.h"
 #include "stages/noise/noise.h"
 
@@ -23,7 +24,8 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
       balance_scratch_(setup.size),
       scratch_(setup.size, setup.max_disparity, params.semi_global(), pool.threads()),
       speckle_scratch_(setup.size),
-      smooth_scratch_(setup.size) {}
+      smooth_scratch_(setup.size),
+      refine_scratch_(setup.size, pool.most()) {}
 
 void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows, std::optional<bool> clear) {
   const Measured measured = measure(pair, timer, clear);
@@ -46,11 +48,13 @@ Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<boo
 void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer, RowBand rows) {
   const int noise_q4 = params_.soften != 0 ? measured.noise_q4 : 0;
   clear_ = measured.clear;
-  // What the result depends on: taps of the median; islands, which are smaller than `speckle` pixels where they matter; paths
-  // from above, and with paths from below the whole picture.
+  // What the result depends on: taps of the last step and of the median; islands, which are smaller than `speckle` pixels where
+  // they matter; paths from above, and with paths from below the whole picture.
   const int h = pair.size().height;
   rows = rows.within(h);
-  const RowBand checked_rows = params_.smooth != 0 ? rows.grown(WeightedMedian::kRadius, h) : rows;
+  const bool refine = params_.refine != 0 && !clear_;
+  const RowBand smoothed_rows = refine ? rows.grown(LucasKanade::kRows, h) : rows;
+  const RowBand checked_rows = params_.smooth != 0 ? smoothed_rows.grown(WeightedMedian::kRadius, h) : smoothed_rows;
   const RowBand joined = checked_rows.grown(params_.speckle, h);
   const int plane_rows = params_.semi_global().upward ? h : joined.end;
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
@@ -65,8 +69,9 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const M
   const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, params_.semi_global(), joined};
   simd::semi_global(pool_, in, scratch_, {maps_.left_winner, maps_.right_winner, maps_.fine, out.confidence});
   timer.stage("semi_global");
-  // The weighted median writes to another image than it reads: the check stays in the one from which it ends in d_q4.
-  const View<std::uint16_t> checked = params_.smooth != 0 ? maps_.fine.view() : out.d_q4;
+  // What follows the check writes to another image than it reads: the check stays in the one from which it ends in d_q4.
+  const View<std::uint16_t> smoothed = refine ? maps_.fine.view() : out.d_q4, before = refine ? out.d_q4 : maps_.fine.view(),
+                            checked = params_.smooth != 0 ? before : smoothed;
   simd::check_left_right(pool_,
                          {joined.of<const std::int16_t>(maps_.left_winner), joined.of<const std::int16_t>(maps_.right_winner),
                           joined.of(pair.left_inside), joined.of(pair.right_inside), params_.tolerance, params_.reach},
@@ -74,11 +79,14 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const M
   timer.stage("check_left_right");
   simd::remove_speckle(pool_, joined.of(checked), params_.speckle_step_q4, params_.speckle, speckle_scratch_);
   timer.stage("speckle");
-  if (params_.smooth != 0) simd::weighted_median(pool_, {checked, in.left.value[0], rows}, smooth_scratch_, out.d_q4);
+  if (params_.smooth != 0) simd::weighted_median(pool_, {checked, in.left.value[0], smoothed_rows}, smooth_scratch_, smoothed);
+  timer.stage("weighted_median");
+  if (refine)
+    simd::lucas_kanade(pool_, {in.left.value[0], in.right.value[0], smoothed, max_disparity_, rows}, refine_scratch_, out.d_q4);
   for (int y = 0; y < h; ++y)
     if (y < rows.begin || y >= rows.end) std::fill_n(out.d_q4.row(y), out.d_q4.width(), Disparity::kNone);
   if (!out.confidence.empty()) keep_confidence(out.d_q4, out.confidence);
-  timer.stage("weighted_median");
+  timer.stage("lucas_kanade");
 }
 
 }  // namespace duo::simd

@@ -37,6 +37,7 @@ Result<Sgm> Sgm::make(Device& device, const SgmParams& params, const MatchSetup&
   DUO_TRY_ASSIGN(out.check_left_right_, CheckLeftRight::make(device));
   DUO_TRY_ASSIGN(out.remove_speckle_, RemoveSpeckle::make(device));
   DUO_TRY_ASSIGN(out.weighted_median_, WeightedMedian::make(device));
+  DUO_TRY_ASSIGN(out.lucas_kanade_, LucasKanade::make(device));
   DUO_TRY_ASSIGN(out.keep_confidence_,
                  Kernel::make(device, {"keep confidence", kKeepConfidenceCode, 2, sizeof(KeepConfidencePush)}));
   DUO_TRY_ASSIGN(out.settle_clear_, Kernel::make(device, {"settle clear", kSettleClearCode, 3, sizeof(SettleClearPush)}));
@@ -72,8 +73,11 @@ void Sgm::record(Recorder& recorder, const Input& pair, const Output& out) const
   DUO_CHECK(setup_.masked != pair.left_inside.absent());
   const Size size = setup_.size;
   record_winners(recorder, pair, out.confidence);
-  // The weighted median writes to another image than it reads: the check starts in the one from which it ends in d_q4.
-  const auto checked = params_.smooth != 0 ? whole<std::uint16_t>(maps_.checked) : out.d_q4;
+  // What follows the check writes to another image than it reads: the check starts in the one from which it ends in d_q4.
+  const bool refine = params_.refine != 0;
+  const auto between = whole<std::uint16_t>(maps_.checked);
+  const auto smoothed = refine ? between : out.d_q4, before = refine ? out.d_q4 : between;
+  const auto checked = params_.smooth != 0 ? before : smoothed;
   check_left_right_.record(recorder,
                            {whole<std::int16_t>(maps_.left_winner), whole<std::int16_t>(maps_.right_winner), pair.left_inside,
                             pair.right_inside, params_.tolerance, params_.reach},
@@ -81,17 +85,20 @@ void Sgm::record(Recorder& recorder, const Input& pair, const Output& out) const
   recorder.stage("check_left_right");
   remove_speckle_.record(recorder, checked, params_.speckle_step_q4, params_.speckle, maps_.speckle, size);
   recorder.stage("speckle");
-  if (params_.smooth != 0) weighted_median_.record(recorder, {checked, left_of(pair)}, out.d_q4, size);
+  if (params_.smooth != 0) weighted_median_.record(recorder, {checked, left_of(pair)}, smoothed, size);
+  recorder.stage("weighted_median");
+  if (refine)
+    lucas_kanade_.record(recorder, {left_of(pair), right_as_matched(), smoothed, setup_.max_disparity}, maps_.stream, out.d_q4,
+                         size);
   if (!out.confidence.absent())
     recorder.dispatch(keep_confidence_, KeepConfidencePush{out.d_q4.plane, out.confidence.plane, size.width, size.height},
                       {reads(out.d_q4), writes(out.confidence)}, groups_for(size));
-  recorder.stage("weighted_median");
+  recorder.stage("lucas_kanade");
 }
 
 void Sgm::record_winners(Recorder& recorder, const Input& pair, BufferView<std::uint8_t> margin) const {
   const Size size = setup_.size;
   const auto balanced = whole<std::uint8_t>(maps_.balanced);
-  auto softened = balanced;
   const auto left = whole<std::uint32_t>(maps_.left_planes), right = whole<std::uint32_t>(maps_.right_planes);
   noise_.record(recorder, pair.left, pair.right, maps_.noise, maps_.noise_q4, size);
   recorder.stage("noise");
@@ -103,13 +110,12 @@ void Sgm::record_winners(Recorder& recorder, const Input& pair, BufferView<std::
                   maps_.balance, balanced, size);
   recorder.stage("balance");
   if (params_.soften != 0) {
-    softened = whole<std::uint8_t>(maps_.soft_right);
     bilateral_.record(recorder, pair.left, maps_.noise_q4, left_of(pair), size);
-    bilateral_.record(recorder, balanced, maps_.noise_q4, softened, size);
+    bilateral_.record(recorder, balanced, maps_.noise_q4, right_as_matched(), size);
   }
   recorder.stage("bilateral");
   match_planes_.record(recorder, left_of(pair), pair.left_inside, maps_.noise_q4, maps_.stream, left, size);
-  match_planes_.record(recorder, softened, pair.right_inside, maps_.noise_q4, maps_.stream, right, size);
+  match_planes_.record(recorder, right_as_matched(), pair.right_inside, maps_.noise_q4, maps_.stream, right, size);
   recorder.stage("match_planes");
   semi_global_.record(recorder, left, right, maps_.semi_global,
                       {whole<std::int16_t>(maps_.left_winner), whole<std::int16_t>(maps_.right_winner),

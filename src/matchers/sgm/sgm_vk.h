@@ -7,6 +7,7 @@
 #include "stages/bilateral/bilateral_vk.h"
 #include "stages/blur/blur_vk.h"
 #include "stages/check_left_right/check_left_right_vk.h"
+#include "stages/lucas_kanade/lucas_kanade_vk.h"
 #include "stages/match_planes/match_planes_vk.h"
 #include "stages/noise/noise_vk.h"
 #include "stages/semi_global/semi_global_vk.h"
@@ -43,6 +44,9 @@ class Sgm {
   BufferView<std::uint8_t> left_of(const Input& pair) const {
     return params_.soften != 0 ? whole<std::uint8_t>(maps_.soft_left) : pair.left;
   }
+  BufferView<std::uint8_t> right_as_matched() const {
+    return whole<std::uint8_t>(params_.soften != 0 ? maps_.soft_right : maps_.balanced);
+  }
   template <class T>
   BufferView<T> whole(const Buffer& buffer) const {
     return {buffer, {0, setup_.size.width}};
@@ -60,6 +64,7 @@ class Sgm {
   CheckLeftRight check_left_right_;
   RemoveSpeckle remove_speckle_;
   WeightedMedian weighted_median_;
+  LucasKanade lucas_kanade_;
   Kernel keep_confidence_, settle_clear_;
 };
 

@@ -73,41 +73,49 @@ int number_regions(Pool& pool, const Forest& forest, FillRegionsScratch& s) {
   return count;
 }
 
-/// Calls f(y, x, number) for the measured pixels that have their region to all sides, in reading order.
+/// Calls f(y, run, region) for the runs of all regions.
 template <class F>
-void each_inner(const Forest& forest, View<const std::int32_t> region, View<const std::uint16_t> d_q4, const F& f) {
-  for (int y = In::kInnerRows; y + In::kInnerRows < d_q4.height(); ++y)
+void each_run(const Forest& forest, FillRegionsScratch& s, int begin, int end, const F& f) {
+  for (int y = begin; y < end; ++y)
     for (int i = 0; i < forest.runs_in(y); ++i) {
       const auto& run = forest.run(y, i);
-      const int number = region.at(y, run.begin);
-      if (number == 0) continue;
-      for (int x = run.begin + In::kInnerColumns; x < run.end - In::kInnerColumns; ++x) {
-        if (d_q4.at(y, x) == Disparity::kNone) continue;
-        bool inner = true;
-        for (int k = 1; k <= In::kInnerRows; ++k) inner &= region.at(y - k, x) == number && region.at(y + k, x) == number;
-        if (inner) f(y, x, static_cast<std::size_t>(number));
-      }
+      if (const int number = s.region.at(y, run.begin); number != 0) f(y, run, s.regions[static_cast<std::size_t>(number)]);
     }
+}
+
+bool wants_points(const FillRegionsScratch::Region& region) { return In::kHolesOf * region.holes >= region.pixels; }
+
+/// Calls f(y, x, region) for the measured pixels that have their region to all sides, in reading order, of those with enough
+/// holes.
+template <class F>
+void each_inner(const Forest& forest, FillRegionsScratch& s, View<const std::uint16_t> d_q4, const F& f) {
+  each_run(forest, s, In::kInnerRows, d_q4.height() - In::kInnerRows, [&](int y, const auto& run, auto& region) {
+    if (!wants_points(region)) return;
+    const int number = s.region.at(y, run.begin);
+    for (int x = run.begin + In::kInnerColumns; x < run.end - In::kInnerColumns; ++x) {
+      if (d_q4.at(y, x) == Disparity::kNone) continue;
+      bool inner = true;
+      for (int k = 1; k <= In::kInnerRows; ++k) inner &= s.region.at(y - k, x) == number && s.region.at(y + k, x) == number;
+      if (inner) f(y, x, region);
+    }
+  });
 }
 
 /// The points of all regions with enough holes, one region after the other.
 void collect_points(const Forest& forest, FillRegionsScratch& s, int count, View<const std::uint16_t> d_q4) {
-  for (int y = 0; y < d_q4.height(); ++y)
-    for (int x = 0; x < d_q4.width(); ++x)
-      if (const int number = s.region.at(y, x); number != 0 && d_q4.at(y, x) == Disparity::kNone)
-        ++s.regions[static_cast<std::size_t>(number)].holes;
-  const auto wants = [](const FillRegionsScratch::Region& r) { return In::kHolesOf * r.holes >= r.pixels; };
-  each_inner(forest, s.region, d_q4, [&](int, int, std::size_t number) { ++s.regions[number].points; });
+  each_run(forest, s, 0, d_q4.height(), [&](int y, const auto& run, auto& region) {
+    const std::uint16_t* row = d_q4.row(y);
+    region.holes += static_cast<int>(std::count(row + run.begin, row + run.end, Disparity::kNone));
+  });
+  each_inner(forest, s, d_q4, [](int, int, auto& region) { ++region.points; });
   std::size_t first = 0;
   for (int i = 1; i <= count; ++i) {
     auto& region = s.regions[static_cast<std::size_t>(i)];
     region.first = first;
-    if (wants(region)) first += region.points;
+    first += region.points;
     region.points = 0;
   }
-  each_inner(forest, s.region, d_q4, [&](int y, int x, std::size_t number) {
-    auto& region = s.regions[number];
-    if (!wants(region)) return;
+  each_inner(forest, s, d_q4, [&](int y, int x, auto& region) {
     s.points[region.first + region.points++] = {static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(x), d_q4.at(y, x)};
   });
 }
@@ -138,15 +146,15 @@ void fill_regions(Pool& pool, const FillRegions& in, FillRegionsScratch& scratch
     }
   });
   pool.rows(d_q4.height(), [&](int begin, int end) {
-    for (int y = begin; y < end; ++y)
-      for (int x = 0; x < d_q4.width(); ++x) {
-        const auto& region = scratch.regions[static_cast<std::size_t>(scratch.region.at(y, x))];
-        if (!region.fills || d_q4.at(y, x) != Disparity::kNone) continue;
+    each_run(forest, scratch, begin, end, [&](int y, const auto& run, const auto& region) {
+      for (int x = run.begin; region.fills && x < run.end; ++x) {
+        if (d_q4.at(y, x) != Disparity::kNone) continue;
         const int d = region.plane.d_q4(y, x);
         if (d < 0 || d > 16 * (in.max_disparity - 1)) continue;
         d_q4.at(y, x) = static_cast<std::uint16_t>(d);
         origin.at(y, x) = static_cast<std::uint8_t>(Origin::kFilled);
       }
+    });
   });
 }
 

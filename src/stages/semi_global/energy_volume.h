@@ -18,7 +18,7 @@ namespace duo {
 ///         and above alone
 /// Exact   ref and simd agree bit for bit, with any number of threads
 struct EnergyOf {
-  static constexpr int kMostCost = 25, kMostPaths = 40, kMost = kMostCost + kMostPaths + kMostPaths / 2;
+  static constexpr int kMostCost = 25, kMostPaths = 55, kMost = kMostCost + kMostPaths + kMostPaths / 2;
   static int energy(int cost, int sum, int least_sum) {
     const int s = std::min(sum - least_sum, kMostPaths);
     return std::min(cost, kMostCost) + s + s / 2;

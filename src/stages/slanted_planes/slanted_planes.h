@@ -47,7 +47,7 @@ struct PlaneMap {
 /// Shape    guide and planes H x W of the energies
 /// Threads  rows are independent within a sweep: a sweep reads what the one before it left
 /// Exact    ref and simd agree bit for bit, with any number of threads: integers, and random numbers that are a function of
-///          pixel, sweep and try; an energy is at most 169 * 219 * 85 * 16 < 2^26
+///          pixel, sweep and try; an energy is at most 169 * 219 * 107 * 16 < 2^26
 /// Source   Bleyer, Rhemann, Rother, "PatchMatch stereo: stereo matching with slanted support windows", 2011; slanted surfaces
 /// as
 ///          in Ogale, Aloimonos, "Shape and the stereo correspondence problem", 2005; weights as in Yoon, Kweon, "Adaptive

@@ -1,0 +1,152 @@
+#include "stages/lucas_kanade/lucas_kanade.h"
+
+#include <cmath>
+
+#include "tests/agree.h"
+
+namespace duo {
+namespace {
+
+constexpr int kNoDisparity = Disparity::kNone;
+
+/// A zigzag of slope 16 from 0 up to 64 and back, at any place.
+double zigzag(double x) {
+  const double in_period = std::fmod(x + 80, 8);
+  return 16 * std::min(in_period, 8 - in_period);
+}
+
+/// One row of it, which the left view sees `true_px` further right than the right view.
+struct ZigzagPair {
+  Image<std::uint8_t> left{{14, 1}}, right{{14, 1}};
+  Image<std::uint16_t> d_q4{{14, 1}};
+  ZigzagPair(double true_px, int d) {
+    for (int x = 0; x < 14; ++x) {
+      left.at(0, x) = static_cast<std::uint8_t>(std::lround(zigzag(x - true_px)));
+      right.at(0, x) = static_cast<std::uint8_t>(std::lround(zigzag(x)));
+      d_q4.at(0, x) = static_cast<std::uint16_t>(d);
+    }
+  }
+  Image<std::uint16_t> stepped(int max_disparity = 16) const {
+    Image<std::uint16_t> out(d_q4.size());
+    ref::lucas_kanade({left, right, d_q4, max_disparity}, out);
+    return out;
+  }
+};
+
+// By hand: 4096 * 64 / (64 * 64 + 64) = 63.02, 683 * 64 * 64 / (64 * 64 + 64) = 672.5 down; 4096 * 8 / 128 = 256.
+TEST(LucasKanade, GradientsCountAlmostAlike) {
+  EXPECT_EQ(lucas_kanade_pull(0), 0);
+  EXPECT_EQ(lucas_kanade_weight(0), 34);
+  EXPECT_EQ(lucas_kanade_pull(8), 256);
+  EXPECT_EQ(lucas_kanade_weight(8), 342 + 34);
+  EXPECT_EQ(lucas_kanade_pull(64), 63);
+  EXPECT_EQ(lucas_kanade_weight(64), 672 + 34);
+}
+
+// By hand: column 8, whose taps are the columns 3 .. 12. Going up e is -64, going down 64; g is 64, where the left view turns
+// 56, where both do 8. So of ten taps five have -64 * 63 and 706; three -64 * 72 and 703; two -64 * 256 and 376: in all
+// -66752 and 6391, and (2 * 66752 / 6391 + 1) / 2 = 10 sixteenths, of which 8 are taken: the turns say most.
+TEST(LucasKanade, StepsToWhereBothViewsAreAlike) {
+  const ZigzagPair pair(2.25, 32);
+  const LucasKanade in{pair.left, pair.right, pair.d_q4, 16};
+  const int pull[] = {-64 * 72, -64 * 63, -64 * 63, -64 * 256, -64 * 72, -64 * 63, -64 * 63, -64 * 256, -64 * 72, -64 * 63};
+  const int weight[] = {703, 706, 706, 376, 703, 706, 706, 376, 703, 706};
+  for (int i = 0; i < 10; ++i) {
+    const LucasKanadeSums tap = ref::lucas_kanade_tap(in, 0, 3 + i);
+    EXPECT_EQ(tap.pull, pull[i]) << i;
+    EXPECT_EQ(tap.weight, weight[i]) << i;
+  }
+  EXPECT_EQ(pair.stepped().at(0, 8), 40);
+  EXPECT_EQ(ZigzagPair(2, 32).stepped().at(0, 8), 32);
+}
+
+// By hand: 2 * 1000 / 110 = 18, nine sixteenths: half a pixel is the most. And the range is not left.
+TEST(LucasKanade, IsHeld) {
+  EXPECT_EQ((LucasKanadeSums{-1000, 110}).step_q4(), 8);
+  EXPECT_EQ((LucasKanadeSums{1000, 400}).step_q4(), -3);
+  EXPECT_EQ(LucasKanadeSums().step_q4(), 0);
+  EXPECT_EQ(ZigzagPair(2.25, 32).stepped(3).at(0, 8), 32);
+}
+
+// A shaded surface without any texture tells its place, too: -4 levels on a slope of 16 are a quarter of a pixel, and one and a
+// half times that: (2 * 4032 / 706 + 1) / 2 = 6 sixteenths.
+TEST(LucasKanade, ShadingTellsThePlace) {
+  ZigzagPair slope(2, 32);
+  for (int x = 0; x < 14; ++x)
+    slope.right.at(0, x) = static_cast<std::uint8_t>(16 * x),
+                      slope.left.at(0, x) = static_cast<std::uint8_t>(std::max(16 * x - 36, 0));
+  EXPECT_EQ(slope.stepped().at(0, 8), 38);
+}
+
+TEST(LucasKanade, WhatSeesSomethingElseDoesNotCount) {
+  ZigzagPair pair(2.25, 32);
+  pair.left.at(0, 12) = 200;  // beyond the window of column 8 but for the gradient of column 11
+  const LucasKanade in{pair.left, pair.right, pair.d_q4, 16};
+  EXPECT_EQ(ref::lucas_kanade_tap(in, 0, 12).weight, 0);
+  pair.d_q4.at(0, 9) = kNoDisparity;
+  EXPECT_EQ(ref::lucas_kanade_tap(in, 0, 9).weight, 0);
+  EXPECT_EQ(pair.stepped().at(0, 9), kNoDisparity);
+  // Places whose neighbours lie outside either picture.
+  for (const int x : {0, 1, 2, 13}) EXPECT_EQ(ref::lucas_kanade_tap(in, 0, x).weight, 0) << x;
+  EXPECT_GT(ref::lucas_kanade_tap(in, 0, 3).weight, 0);
+}
+
+/// Pictures and disparities of every kind, with holes among these.
+struct LikeViews {
+  test::Tight<std::uint8_t> left, right;
+  test::Tight<std::uint16_t> d_q4;
+
+  LikeViews(Size size, test::Fill how, std::mt19937& rng) : left(size), right(size), d_q4(size) {
+    test::fill(left.view, how, rng);
+    test::fill(right.view, rng() % 2 ? test::Fill::kRandom : how, rng);
+    const int contrast = rng() % 2 ? 255 : 15, most = rng() % 2 ? 16 * 60 : 40;
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) {
+        d_q4.view.at(y, x) = static_cast<std::uint16_t>(rng() % 6 == 0 ? static_cast<unsigned>(kNoDisparity)
+                                                                       : rng() % static_cast<unsigned>(most));
+        left.view.at(y, x) &= static_cast<std::uint8_t>(contrast);
+        right.view.at(y, x) &= static_cast<std::uint8_t>(contrast);
+      }
+  }
+};
+
+TEST(LucasKanade, SimdAgrees) {
+  std::mt19937 rng(31);
+  Pool one(1), two(2);
+  auto sizes = test::awkward_sizes();
+  sizes.insert(sizes.end(), {{6, 14}, {32, 12}, {70, 20}});
+  for (const Size size : sizes)
+    for (const test::Fill how : test::kFills) {
+      const LikeViews inputs(size, how, rng);
+      const LucasKanade in{inputs.left.view, inputs.right.view, inputs.d_q4.view, 61};
+      test::Tight<std::uint16_t> want(size);
+      ref::lucas_kanade(in, want.view);
+      test::each_target([&](const std::string& target) {
+        simd::LucasKanadeScratch scratch(size, 2);
+        for (Pool* pool : {&one, &two})
+          for (int turn = 0; turn < 2; ++turn) {  // the scratch keeps nothing
+            test::Tight<std::uint16_t> got(size);
+            simd::lucas_kanade(*pool, in, scratch, got.view);
+            test::expect_same<std::uint16_t>(want.view, got.view,
+                                             "lucas_kanade simd " + target + " threads " + std::to_string(pool->threads()));
+          }
+      });
+      if (HasFailure()) return;
+    }
+}
+
+TEST(LucasKanade, OnlyRowsThatAreNeeded) {
+  std::mt19937 rng(32);
+  const Size size{70, 40};
+  const LikeViews inputs(size, test::Fill::kRandom, rng);
+  Image<std::uint16_t> whole(size), part(size);
+  ref::lucas_kanade({inputs.left.view, inputs.right.view, inputs.d_q4.view, 61}, whole);
+  Pool pool(2);
+  simd::LucasKanadeScratch scratch(size, 2);
+  const RowBand rows{11, 29};
+  simd::lucas_kanade(pool, {inputs.left.view, inputs.right.view, inputs.d_q4.view, 61, rows}, scratch, part);
+  test::expect_same<std::uint16_t>(rows.of(View<const std::uint16_t>(whole)), rows.of(View<const std::uint16_t>(part)), "rows");
+}
+
+}  // namespace
+}  // namespace duo
