@@ -82,6 +82,7 @@ TEST(Engine, WindowsHaveTheWholePicturesValues) {
       duo::Setup setup = raw_setup(scene, choice);
       setup.fill = fill;
       setup.wants.confidence = std::string_view(choice.matcher) == "sgm";
+      if (std::string_view(choice.matcher) == "sgm") setup.parameters = {{"refine", fill ? 0 : 1}};
       const std::string what = std::string(choice.matcher) + " " + choice.preset + (fill ? " filled" : "");
       const auto reference = prepared("ref", 1, setup);
       const std::shared_ptr<const Frame> whole = run(*reference, scene.pair);

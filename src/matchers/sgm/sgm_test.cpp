@@ -27,7 +27,7 @@ struct BoxScene {
 
 void expect_engines_agree(Size size, int max_disparity, int paths, bool masked, int clear = 1) {
   const BoxScene scene(size);
-  const SgmParams params = *sgm_params("default", {{"paths", paths}, {"clear", clear}});
+  const SgmParams params = *sgm_params("default", {{"paths", paths}, {"clear", clear}, {"refine", masked}});
   Image<std::uint8_t> inside = test::constant<std::uint8_t>(size, 255);
   for (int y = 0; y < size.height; ++y) inside.at(y, 0) = 0;
   GrayPair pair{scene.left, scene.right};

@@ -62,7 +62,7 @@ void expect_sgm_agrees(vk::Device& device, const SgmParams& params, const MatchS
 TEST(SgmVk, PresetsAgree) {
   test::each_device([](vk::Device& device, const std::string& where) {
     for (const char* preset : {"default", "paths8"}) {
-      const SgmParams params = *sgm_params(preset, {});
+      const SgmParams params = *sgm_params(preset, {{"refine", 1}});
       expect_sgm_agrees(device, params, {{90, 30}, 20, false}, false, where);
       expect_sgm_agrees(device, params, {{33, 17}, 70, true}, true, where);
       expect_sgm_agrees(device, params, {{1, 1}, 1, true}, true, where);
@@ -73,7 +73,8 @@ TEST(SgmVk, PresetsAgree) {
 
 TEST(SgmVk, AgreesUnsmoothed) {
   test::each_device([](vk::Device& device, const std::string& where) {
-    const SgmParams params = *sgm_params("default", {{"paths", 4}, {"smooth", 0}, {"speckle", 20}, {"reach", 0}});
+    const SgmParams params =
+        *sgm_params("default", {{"paths", 4}, {"smooth", 0}, {"speckle", 20}, {"reach", 0}, {"refine", 1}});
     expect_sgm_agrees(device, params, {{61, 24}, 16, true}, true, where);
   });
 }
@@ -81,7 +82,7 @@ TEST(SgmVk, AgreesUnsmoothed) {
 TEST(SgmVk, AgreesOnClearPictures) {
   test::each_device([](vk::Device& device, const std::string& where) {
     for (const int clear : {0, 2})
-      expect_sgm_agrees(device, *sgm_params("default", {{"clear", clear}}), {{61, 24}, 16, true}, true, where);
+      expect_sgm_agrees(device, *sgm_params("default", {{"clear", clear}, {"refine", 1}}), {{61, 24}, 16, true}, true, where);
   });
 }
 
