@@ -217,10 +217,13 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     inside += point.inside;
     seen += state.seen;
     const bool was_hidden = state.hidden > 2;
-    // After a gap one sight may be a mistake, and more of a hand or wrist that the network of hands does not see.
-    const bool sure = !is_hand_or_wrist(id) || scene.hands[side] == HandSight::kSeen;
     state.shown = state.seen ? state.shown + 1 : 0;
-    state.sure = state.seen && !hidden_by_arm && (state.sure || state.shown >= (sure ? kSights : kUnsureSights) || age_ == 1);
+    // After a gap one sight may be a mistake, and more of a hand or wrist at which the network of hands did not look; where it
+    // looked and saw none, they are not believed again.
+    const HandSight sight = is_hand_or_wrist(id) ? scene.hands[side] : HandSight::kSeen;
+    const int enough = sight == HandSight::kSeen ? kSights : kUnsureSights;
+    const bool believed = state.sure || age_ == 1 || (sight != HandSight::kAbsent && state.shown >= enough);
+    state.sure = state.seen && !hidden_by_arm && believed && !frame.is_in_margin(point.at_px);
     state.hidden = state.seen ? 0 : state.hidden + 1;
     const Vec3 off = p - scene.expected[id].p;
     // What the network guesses of a hidden limb tells nothing of its speed.

@@ -198,6 +198,9 @@ TEST(BodyFit, SpineAndNeckLeaveAtRightAngles) {
   EXPECT_NEAR(dot(places[kNeck] - places[kChest], places[kLeftShoulder] - places[kRightShoulder]), 0, 1e-12);
   EXPECT_LT(distance(places[kSpine], middle(places[kPelvis], places[kChest])), 0.06);
   EXPECT_LT(places[kNeck].y, places[kChest].y - 0.08);
+  // However the shoulders are tilted, the neck is as long.
+  EXPECT_NEAR(distance(places[kNeck], places[kChest]), std::hypot(0.225 * distance(places[kChest], places[kPelvis]), 0.022),
+              1e-12);
 }
 
 TEST(BodySurfaceMap, HeightsGoAlongWithTheTrunk) {

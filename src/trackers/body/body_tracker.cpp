@@ -274,7 +274,8 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
   DUO_CHECK(finder_ != nullptr);
   timer_.start(times_, setup_.time_stages);
   const View<const Rgb8> picture = margin_.fill(frame.color);
-  const body::FrameView view{{frame.disparity.d_q4, &setup_.rectified}, picture, setup_.frame_s, setup_.body_model, {}};
+  const body::FrameView view{
+      {frame.disparity.d_q4, &setup_.rectified}, picture, setup_.frame_s, setup_.body_model, {}, margin_.mask()};
   uncover(view);
   timer_.stage("fit");
   look_elsewhere(view);

@@ -19,12 +19,15 @@ class FilledMargin {
   ///
   /// Shape  rectified.size
   View<const Rgb8> fill(View<const Rgb8> picture);
+  /// Not 0 in the margins. Empty without a lens.
+  View<const std::uint8_t> mask() const { return mask_; }
 
  private:
   /// Units  px; `from`: the nearest pixel of the same column or row that the camera sees
   struct Repeated {
     int x, y, from_x, from_y;
   };
+  Image<std::uint8_t> mask_;
   std::vector<Repeated> margin_;
   Image<Rgb8> filled_;
 };

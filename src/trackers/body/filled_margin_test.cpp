@@ -28,6 +28,8 @@ TEST(FilledMargin, RepeatsThePicturesEdge) {
   EXPECT_EQ(filled.at(37, 20), (Rgb8{20, 28, 9}));
   EXPECT_EQ(filled.at(0, 20), (Rgb8{20, 1, 9}));
   EXPECT_EQ(filled.at(20, 44), (Rgb8{43, 20, 9}));
+  EXPECT_NE(margin.mask().at(37, 20), 0);
+  EXPECT_EQ(margin.mask().at(20, 20), 0);
 }
 
 /// A canvas within what the camera sees is left as it is.

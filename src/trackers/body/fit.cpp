@@ -231,8 +231,9 @@ void complete(Places& places) {
   places[kChest] = middle(places[kLeftShoulder], places[kRightShoulder]);
   const Vec3 up = places[kChest] - places[kPelvis], back = cross(up, places[kLeftShoulder] - places[kRightShoulder]);
   places[kSpine] = places[kPelvis] + 0.5 * across(kLeftHip, kRightHip, up);
-  const Vec3 neck = kNeckAbove * up + (kNeckBehind_m / std::max(norm(back), 1e-6)) * back;
-  places[kNeck] = places[kChest] + across(kLeftShoulder, kRightShoulder, neck);
+  const Vec3 above = across(kLeftShoulder, kRightShoulder, up);
+  places[kNeck] = places[kChest] + (kNeckAbove * norm(up) / std::max(norm(above), 1e-6)) * above +
+                  (kNeckBehind_m / std::max(norm(back), 1e-6)) * back;
 }
 
 void Fit::run(const Scene& scene, const Choices& chosen, const LimbSamples& samples, Fitted& out) {

@@ -28,7 +28,8 @@ class Fit {
   PointEquations<kFreeJoints.size()> equations_;
 };
 
-/// The same pose with bones as long as the person's, as these are kept: limbs, neck and trunk keep their directions, and the trunk its middle.
+/// The same pose with bones as long as the person's, as these are kept: limbs, neck and trunk keep their directions, and the
+/// trunk its middle.
 Places with_lengths(const Places& places, const Lengths& lengths);
 
 /// Pelvis, spine, chest and neck from shoulders and hips.

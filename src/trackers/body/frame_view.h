@@ -11,12 +11,17 @@ struct FrameView {
   DepthView depth;
   View<const Rgb8> picture;
   double frame_s = 1.0 / 30;
-  BodyModel model = BodyModel::kLite;  // that marked the points
-  View<const std::uint8_t> covered;    // not 0: somebody nearer was taken out there; empty: nobody was
+  BodyModel model = BodyModel::kLite;    // that marked the points
+  View<const std::uint8_t> covered;      // not 0: somebody nearer was taken out there; empty: nobody was
+  View<const std::uint8_t> margin = {};  // not 0: the camera sees nothing there; empty: it sees all
 
-  bool is_covered(Vec2 at_px) const {
+  bool is_covered(Vec2 at_px) const { return is_set(covered, at_px); }
+  bool is_in_margin(Vec2 at_px) const { return is_set(margin, at_px); }
+
+ private:
+  static bool is_set(View<const std::uint8_t> mask, Vec2 at_px) {
     const int x = static_cast<int>(at_px.x + 0.5), y = static_cast<int>(at_px.y + 0.5);
-    return at_px.x >= 0 && at_px.y >= 0 && x < covered.width() && y < covered.height() && covered.at(y, x) != 0;
+    return at_px.x >= 0 && at_px.y >= 0 && x < mask.width() && y < mask.height() && mask.at(y, x) != 0;
   }
 };
 
