@@ -238,8 +238,6 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
   }
   seen_share_ = static_cast<double>(seen) / std::max(inside, 1);
   missed_ = seen > 0 ? 0 : missed_ + 1;
-  for (const Limb& leg : kLegChains)
-    for (std::size_t n = 0; n < 2; ++n) states_[leg[n]].cut = !scene.points[leg[n + 1]].inside;
   learn_pace();
 }
 
@@ -339,16 +337,16 @@ std::optional<TurnedSquare> Body::hand_region(const FrameView& frame, const Seen
 void Body::publish(const FrameView& frame, Person& person) const {
   using enum JointId;
   // Equations know nothing of what is wrong in the same way in all frames. Hips are marked higher or lower on one person than
-  // on another, and of legs that the picture cuts all marks are.
-  constexpr double kScale = 1.4, kHandScale = 1.15, kFloor_m = 0.006, kHipMark_m = 0.028, kCutMark_m = 0.04, kLost_m = 0.45,
-                   kHandLost_m = 0.37, kHeld_m = 0.07;
+  // on another.
+  constexpr double kScale = 1.4, kHandScale = 1.15, kFloor_m = 0.006, kHipMark_m = 0.028, kLost_m = 0.45, kHandLost_m = 0.37,
+                   kHeld_m = 0.07;
   const Places places = with_lengths(fitted_.places, lengths_);
   const auto fill = [&](JointId id, Vec3 p, const Covariance3& c, JointState state, Vec3 step) {
     Joint& joint = person.joints[index_of(id)];
     joint.p_in_rig_m = p;
     const bool hand = is_hand_or_wrist(id);
     const double k = square(hand ? kHandScale : kScale), floor = square(kFloor_m);
-    const double mark = states_[id].cut ? square(kCutMark_m) : is_hip(id) ? square(kHipMark_m) : 0;
+    const double mark = is_hip(id) ? square(kHipMark_m) : 0;
     joint.cov_m2 = {k * c.xx + floor, k * c.xy, k * c.xz, k * c.yy + floor + mark, k * c.yz, k * c.zz + floor};
     joint.v_in_rig_m_s = (1 / frame.frame_s) * step;
     joint.state = joint.sigma_m() > (hand ? kHandLost_m : kLost_m) ? JointState::kLost : state;

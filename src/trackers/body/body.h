@@ -58,7 +58,6 @@ class Body {
     int hidden = 0, shown = 0;  // frames since it was seen, and since it was not
     double sigma_m = 0.1;
     bool seen = false, sure = false;
-    bool cut = false;  // its limb goes on beyond the picture
   };
 
   explicit Body(double scale) : lengths_(scale) {}
