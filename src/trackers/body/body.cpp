@@ -223,7 +223,7 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     const HandSight sight = is_hand_or_wrist(id) ? scene.hands[side] : HandSight::kSeen;
     const int enough = sight == HandSight::kSeen ? kSights : kUnsureSights;
     const bool believed = state.sure || age_ == 1 || (sight != HandSight::kAbsent && state.shown >= enough);
-    state.sure = state.seen && !hidden_by_arm && believed && !frame.is_in_margin(point.at_px);
+    state.sure = state.seen && !hidden_by_arm && believed && frame.shows(point.at_px) && frame.shows(at);
     state.hidden = state.seen ? 0 : state.hidden + 1;
     const Vec3 off = p - scene.expected[id].p;
     // What the network guesses of a hidden limb tells nothing of its speed.

@@ -16,7 +16,11 @@ struct FrameView {
   View<const std::uint8_t> margin = {};  // not 0: the camera sees nothing there; empty: it sees all
 
   bool is_covered(Vec2 at_px) const { return is_set(covered, at_px); }
-  bool is_in_margin(Vec2 at_px) const { return is_set(margin, at_px); }
+  /// Whether the camera sees a place.
+  bool shows(Vec2 at_px) const {
+    return at_px.x >= 0 && at_px.y >= 0 && at_px.x <= picture.width() - 1 && at_px.y <= picture.height() - 1 &&
+           !is_set(margin, at_px);
+  }
 
  private:
   static bool is_set(View<const std::uint8_t> mask, Vec2 at_px) {
