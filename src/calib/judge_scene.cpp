@@ -67,7 +67,7 @@ bool behind(const Rig& rig, const ScenePose& free, const std::vector<SceneMatch>
   const std::vector<double> d = sorted_disparities_px(rig.metric ? free.rig : rig, matches);
   if (d.empty()) return false;
   const auto at = [&](double share) { return d[static_cast<std::size_t>(share * static_cast<double>(d.size() - 1))]; };
-  return rig.metric ? at(0.5) < -1 - 3 * free.pan_noise_rad * rig.left.fx_px : at(0.9) < -1;
+  return rig.metric ? at(0.5) < -1 - 3 * free.turn_sigma_rad.y * rig.left.fx_px : at(0.9) < -1;
 }
 
 /// Which of both it is, where the rows fit the rig clearly better once the one is undone than once the other is; empty where

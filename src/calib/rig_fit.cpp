@@ -137,8 +137,11 @@ RigFit judged(const Rig& rig, const Evidence& evidence) {
   // that is to be found, they must be sure of a larger one.
   constexpr double kToldPan_sigmas = 3;
   const bool could_tell = health->turned_sigma_rad.y <= kLeastPan_rad / kToldPan_sigmas;
-  const bool told = sure_of_pan(*health) || (could_tell && health->pan_px >= kToldPan_sigmas * health->pan_sigma_px);
-  if (fit.verdict == RigVerdict::kCanBeImproved && health->row_px < kGoodRow_px && !told) fit.verdict = RigVerdict::kGood;
+  const bool pan_told = sure_of_pan(*health) || (could_tell && health->pan_px >= kToldPan_sigmas * health->pan_sigma_px);
+  // Few points, on one side of the picture, have rows that are a little off by chance, too.
+  constexpr double kEnoughCovered = 0.5;
+  const bool rows_told = health->row_px >= kGoodRow_px && health->covered >= kEnoughCovered;
+  if (fit.verdict == RigVerdict::kCanBeImproved && !rows_told && !pan_told) fit.verdict = RigVerdict::kGood;
   if (fit.verdict == RigVerdict::kGood) return rig.metric ? fit : not_metric(std::move(fit));
   fit.what = misfit_text(*health);
   fit.disparity_sigma_px = std::hypot(health->row_px, health->pan_px > 2 * health->pan_sigma_px ? health->pan_px : 0);

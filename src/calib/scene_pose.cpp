@@ -278,7 +278,6 @@ Result<ScenePose> fit_scene_pose(const Rig& start, const SceneFreedom& freedom, 
   pose.row_rms_px = pose.used > 0 ? std::sqrt(sum / pose.used) : 0;
   const double alike = lens_free ? 1 : (1 + pose.used * square(systematic_px(start.left.size) / solution.sigma_px)) / repeats;
   pose.turn_sigma_rad = turn_sigma(start, problem, solution.at, alike * solution.covariance);
-  pose.pan_noise_rad = turn_sigma(start, problem, solution.at, solution.covariance).y;
   return pose;
 }
 

@@ -29,11 +29,10 @@ inline constexpr SceneFreedom kNudged = {0.5, 0.0005, 0.0005, 0.5, 0.5, 0, 0, 0}
 
 struct ScenePose {
   Rig rig;
-  int used = 0;              // matches that agree with it
-  double row_rms_px = 0;     // of them
-  Vec3 turned_rad;           // from the start, of the right camera to the left, around its x, y, z
-  Vec3 turn_sigma_rad;       // of the right camera to the left, around x, y, z
-  double pan_noise_rad = 0;  // of it what is noise of the matches
+  int used = 0;           // matches that agree with it
+  double row_rms_px = 0;  // of them
+  Vec3 turned_rad;        // from the start, of the right camera to the left, around its x, y, z
+  Vec3 turn_sigma_rad;    // of the right camera to the left, around x, y, z
 };
 
 /// Matches that some fundamental matrix explains: all lenses of the rig undone, nothing of its pose assumed.
