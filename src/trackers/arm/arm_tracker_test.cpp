@@ -99,7 +99,7 @@ TEST_F(BadInput, SelectGivesThePersons) {
 
 TEST(MakeTracker, Names) {
   for (const std::string& name : tracker_names()) EXPECT_EQ((*make_tracker(name))->name(), name);
-  EXPECT_SAYS(make_tracker("leg").error().what, "choose one of: body, arm, thesis");
+  EXPECT_SAYS(make_tracker("leg").error().what, "choose one of: body, body_hands, arm, thesis");
 }
 
 }  // namespace
