@@ -76,7 +76,7 @@ void Uprights::add(int column, const Run& run) {
     ++blob.runs;
     return;
   }
-  if (blob_count_ < blobs_.size()) blobs_[blob_count_++] = {column, column, run.top, run.bottom, 1, run.z_m, run};
+  blobs_[blob_count_++] = {column, column, run.top, run.bottom, 1, run.z_m, run};
 }
 
 bool Uprights::is_person_sized(const DepthView& depth, const Blob& blob) const {
@@ -105,7 +105,7 @@ std::span<const Upright> Uprights::find(const DepthView& depth) {
   for (int column = 0; column < columns_; ++column)
     for (const Run& run : runs_of(depth, column)) add(column, run);
   std::size_t count = 0;
-  for (std::size_t i = 0; i < blob_count_ && count < found_.size(); ++i) {
+  for (std::size_t i = 0; i < blob_count_; ++i) {
     const Blob& blob = blobs_[i];
     constexpr int kBeside = 3;  // of the nearest column the other camera may see nothing
     if (!is_person_sized(depth, blob)) continue;
@@ -118,7 +118,7 @@ std::span<const Upright> Uprights::find(const DepthView& depth) {
   }
   std::sort(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(count),
             [](const Upright& a, const Upright& b) { return std::pair(a.z_m, a.box_px.x) < std::pair(b.z_m, b.box_px.x); });
-  return {found_.data(), count};
+  return {found_.data(), std::min(count, kMost)};
 }
 
 // The network looks at a square around the hips' middle, a quarter larger than the whole body.

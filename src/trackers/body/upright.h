@@ -25,11 +25,12 @@ struct Upright {
 ///         the 3D-world", 2009
 class Uprights {
  public:
-  /// The nearest first. Valid until the next call.
+  /// The 16 nearest at most, the nearest first. Valid until the next call.
   std::span<const Upright> find(const DepthView& depth);
 
  private:
   static constexpr int kColumns = 48, kMostRows = 96;
+  static constexpr std::size_t kMostRuns = 8;  // of a column
   static constexpr std::size_t kMost = 16;
   /// A run of cells in a column. Units  rows of cells
   struct Run {
@@ -52,10 +53,10 @@ class Uprights {
 
   int side_px_ = 1, columns_ = 0, rows_ = 0;
   std::array<std::array<double, kMostRows>, kColumns> z_m_ = {};  // 0: unknown
-  std::array<Run, 8> runs_;
-  std::array<Blob, 4 * kMost> blobs_;
+  std::array<Run, kMostRuns> runs_;
+  std::array<Blob, kColumns * kMostRuns> blobs_;  // as many as there may be runs
   std::size_t blob_count_ = 0;
-  std::array<Upright, kMost> found_;
+  std::array<Upright, kColumns * kMostRuns> found_;
 };
 
 /// Where the network of bodies would look for a person that stands there. `above_m`: how much of whom the upper border cuts is
