@@ -41,7 +41,7 @@ class Body {
   const Lengths& lengths() const { return lengths_; }
   /// Frames since anything was seen of the person.
   int missed() const { return missed_; }
-  /// Of the joints that are marked in the picture, how many were seen in the last frame.
+  /// Of the joints that are marked in the picture, how many were seen when it was tracked last.
   double seen_share() const { return seen_share_; }
   /// Depth of the trunk's skin.
   double trunk_z_m() const { return trunk_z_m_; }

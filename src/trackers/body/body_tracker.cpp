@@ -69,10 +69,10 @@ class BodyTracker final : public Tracker {
   /// Adds where to look for those who are not followed: who was missed, and who is new.
   void look_elsewhere(const body::FrameView& frame);
   void look_at_hands();
-  /// Those who are gone, and who was taken for somebody by mistake: of a person some joints are seen in each of the first
-  /// frames.
+  /// Drops those who are gone, and who was taken for somebody by mistake: of a person some joints are seen in each of its first
+  /// ten frames.
   void forget();
-  void track_fingers(Tracked& who, const body::DepthView& depth, const Body::Hands& hands);
+  void track_fingers(Tracked& who, const body::FrameView& frame, const Body::Hands& hands);
   void publish(const body::FrameView& frame);
 
   bool has_fingers() const { return skeletons_[0] == &kBodyHands; }
@@ -132,6 +132,9 @@ void BodyTracker::reset() {
   nearer_.reserve(kMostPeople);
   regions_.reserve(kMostPeople + 1);
   trunks_.reserve(kMostPeople);
+  owners_.reserve(kMostPeople);
+  looks_.reserve(2 * kMostPeople);  // hands
+  hands_.reserve(2 * kMostPeople);
   newcomers_ = {};
   if (detector_)
     finder_ = std::make_unique<PeopleFinder>(
@@ -302,12 +305,12 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
       if (sight.hands[s]) hands.seen[s] = &hands_[*sight.hands[s]];
     sight.who->body.track(*sight.frame, *sight.seen, hands, nearer_);
     nearer_.push_back(&sight.who->body.places());
-    track_fingers(*sight.who, sight.frame->depth, hands);
+    track_fingers(*sight.who, *sight.frame, hands);
   }
   for (Tracked& each : tracked_)
     if (std::ranges::none_of(sights_, [&](const Sight& sight) { return sight.who == &each; })) {
       each.body.miss(each.covered);
-      track_fingers(each, view.depth, {});
+      track_fingers(each, view, {});
     }
   forget();
   publish(view);
@@ -317,22 +320,25 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
 }
 
 void BodyTracker::forget() {
-  constexpr int kForget = 75, kConfirm = 10;  // frames
+  constexpr int kForget = 75, kForgetNew = 15, kConfirm = 10;  // frames
   constexpr double kEnough = 1.0 / 3;
   std::erase_if(tracked_, [&](Tracked& each) {
-    if (each.confirmed == kConfirm || each.covered) return each.body.missed() > kForget;
-    ++each.confirmed;
-    const bool mistake = each.body.seen_share() < kEnough;
-    if (mistake) newcomers_.refuse(each.body.expected_trunk());
-    return mistake;
+    const int missed = each.body.missed();
+    if (each.confirmed == kConfirm || each.covered) return missed > kForget;
+    if (each.body.seen_share() < kEnough) {
+      newcomers_.refuse(each.body.expected_trunk());
+      return true;
+    }
+    if (missed == 0) ++each.confirmed;
+    return missed > kForgetNew;
   });
 }
 
-void BodyTracker::track_fingers(Tracked& who, const body::DepthView& depth, const Body::Hands& hands) {
+void BodyTracker::track_fingers(Tracked& who, const body::FrameView& frame, const Body::Hands& hands) {
   if (!has_fingers()) return;
   for (const bool left : {true, false}) {
     const std::size_t side = left ? 0 : 1;
-    who.fingers[side].track(depth, who.body.shows_hand(left) ? hands.seen[side] : nullptr, who.body.places());
+    who.fingers[side].track(frame, who.body.shows_hand(left) ? hands.seen[side] : nullptr, who.body.places());
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/check.h"
+
 namespace duo::body {
 
 FilledMargin::FilledMargin(const Rectified& rectified, const Lens& left) : mask_(rectified.size), filled_(rectified.size) {
@@ -29,6 +31,7 @@ FilledMargin::FilledMargin(const Rectified& rectified, const Lens& left) : mask_
 
 View<const Rgb8> FilledMargin::fill(View<const Rgb8> picture) {
   if (margin_.empty()) return picture;
+  DUO_CHECK(picture.size() == filled_.size());
   for (int y = 0; y < picture.height(); ++y) std::copy_n(picture.row(y), picture.width(), filled_.row(y));
   for (const Repeated& p : margin_) filled_.at(p.y, p.x) = picture.at(p.from_y, p.from_x);
   return filled_;

@@ -47,9 +47,10 @@ std::array<double, kHandPoints> behind_palm_m(const Rectified& geometry, const S
 
 }  // namespace
 
-std::optional<FingerPlaces> place_fingers(const DepthView& depth, const SeenHand& hand, double hand_z_m) {
+std::optional<FingerPlaces> place_fingers(const FrameView& frame, const SeenHand& hand, double hand_z_m) {
   constexpr double kHalfWindow_m = 0.01, kReach_m = 0.2, kHand_m = 0.08, kClose_m = 0.025;
   constexpr double kShape_m = 0.014, kShapeShare = 0.25, kAcross_m = 0.01, kSkin_m = 0.01;
+  const DepthView& depth = frame.depth;
   const double m_per_px = depth.m_per_px(hand_z_m), noise_m = kFingerDepth_px * m_per_px;
   const auto behind = behind_palm_m(*depth.geometry, hand, hand_z_m);
   const auto at = [&](std::size_t i) { return Vec2{hand.points[i].x_px(), hand.points[i].y_px()}; };
@@ -84,7 +85,7 @@ std::optional<FingerPlaces> place_fingers(const DepthView& depth, const SeenHand
       const double measured = square(kSkin_m) + square(noise_m), share = variance / (variance + measured);
       z += share * (joint_z(i, *surface) - z);
       variance *= 1 - share;
-      out.seen[i - 1] = true;
+      out.seen[i - 1] = frame.shows(at(i));
     }
     const Vec3 p = depth.geometry->unproject(at(i), z), ray = (1 / z) * p;
     const double across = square(kAcross_m);
@@ -95,10 +96,10 @@ std::optional<FingerPlaces> place_fingers(const DepthView& depth, const SeenHand
   return out;
 }
 
-void Fingers::track(const DepthView& depth, const SeenHand* hand, const Places& body) {
+void Fingers::track(const FrameView& frame, const SeenHand* hand, const Places& body) {
   const Vec3 wrist_now = body[wrist()];
   const double z = (wrist_now.z + body[left_ ? JointId::kLeftHand : JointId::kRightHand].z) / 2;
-  if (const auto found = hand != nullptr ? place_fingers(depth, *hand, z) : std::nullopt) {
+  if (const auto found = hand != nullptr ? place_fingers(frame, *hand, z) : std::nullopt) {
     found_ = *found;
     hidden_ = 0;
   } else {

@@ -3,8 +3,8 @@
 
 #include "duoptic/detector.h"
 #include "duoptic/person.h"
+#include "trackers/body/frame_view.h"
 #include "trackers/body/joints.h"
-#include "trackers/body/lift.h"
 
 namespace duo::body {
 
@@ -12,14 +12,14 @@ namespace duo::body {
 struct FingerPlaces {
   std::array<Vec3, kFingerJoints> p = {};  // metres, rig frame
   std::array<Covariance3, kFingerJoints> covariance = {};
-  std::array<bool, kFingerJoints> seen = {};  // on a surface of the frame
+  std::array<bool, kFingerJoints> seen = {};  // on a surface of the frame, and by the camera
 };
 
 /// Fingers on the rays of the network's points: as deep as the hand's surfaces and, where fingers are too thin for these or
 /// hidden, as the hand's shape says that the network imagines. `hand_z_m`: where the hand is by the body.
 ///
 /// None where fewer than a third of the points lie on surfaces near there.
-std::optional<FingerPlaces> place_fingers(const DepthView& depth, const SeenHand& hand, double hand_z_m);
+std::optional<FingerPlaces> place_fingers(const FrameView& frame, const SeenHand& hand, double hand_z_m);
 
 /// Follows the fingers of one hand.
 class Fingers {
@@ -27,7 +27,7 @@ class Fingers {
   explicit Fingers(bool left) : left_(left) {}
   /// `hand`: of this frame; null where the network of hands is not sure of one. `body`: as fitted in this frame; fingers that
   /// are not seen go along with its wrist.
-  void track(const DepthView& depth, const SeenHand* hand, const Places& body);
+  void track(const FrameView& frame, const SeenHand* hand, const Places& body);
   /// Fills the hand's joints of `person`, whose skeleton is kBodyHands and whose body is filled.
   void publish(Person& person) const;
 

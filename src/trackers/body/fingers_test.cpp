@@ -8,7 +8,11 @@
 namespace duo::body {
 namespace {
 
-using test::Map;
+/// A map with its picture.
+struct Pictured : test::Map {
+  Image<Rgb8> picture = Image<Rgb8>({320, 240});
+  FrameView view() const { return {test::Map::view(), picture, 1.0 / 30, BodyModel::kLite, {}}; }
+};
 
 constexpr double kAlong_m[kHandPoints] = {0,     0.02, 0.05, 0.08, 0.10, 0.09, 0.13, 0.15, 0.17, 0.09, 0.14,
                                           0.165, 0.19, 0.09, 0.13, 0.15, 0.17, 0.08, 0.11, 0.13, 0.15};
@@ -40,7 +44,7 @@ constexpr double kRound_m = 0.0025;                  // of 1/16 px, and of dispa
 
 /// By hand: the skin is 1 m away, the middle of the index finger's tip 7 mm behind it.
 TEST(Fingers, LieBehindTheirSkin) {
-  Map map;
+  Pictured map;
   map.fill({100, 60, 120, 120}, 1);
   const auto found = place_fingers(map.view(), flat_hand(map.geometry_, 1), 1.02);
   ASSERT_TRUE(found);
@@ -55,7 +59,7 @@ TEST(Fingers, LieBehindTheirSkin) {
 
 /// Where a finger has no depth of its own, the hand's shape says how deep it is, and that is no sight.
 TEST(Fingers, WithoutDepthFollowTheShape) {
-  Map map;
+  Pictured map;
   map.fill({100, 60, 120, 120}, 1);
   SeenHand hand = flat_hand(map.geometry_, 1);
   bend(hand, kIndexTip, -0.06);
@@ -69,9 +73,30 @@ TEST(Fingers, WithoutDepthFollowTheShape) {
   EXPECT_GT(found->covariance[kIndexTip - 1].zz, 2 * found->covariance[kThumbTip - 1].zz);
 }
 
+/// What the picture's edge was repeated in is no sight, nor is what lies beyond the picture.
+TEST(Fingers, AreNotSeenWhereTheCameraSeesNothing) {
+  Pictured map;
+  map.fill({100, 60, 120, 120}, 1);
+  const SeenHand hand = flat_hand(map.geometry_, 1);
+  Image<std::uint8_t> margin({320, 240});
+  for (int y = 0; y < 240; ++y)
+    for (int x = 0; x < 320; ++x) margin.at(y, x) = y <= hand.points[kIndexTip].y_px() + 4 ? 1 : 0;
+  FrameView frame = map.view();
+  frame.margin = margin;
+  const auto found = place_fingers(frame, hand, 1.02);
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->seen[kIndexTip - 1]);
+  EXPECT_TRUE(found->seen[kThumbTip - 1]);
+  frame = map.view();
+  frame.picture = frame.picture.crop(0, 0, {static_cast<int>(hand.points[kThumbTip].x_px()) - 2, 240});
+  const auto beside = place_fingers(frame, hand, 1.02);
+  ASSERT_TRUE(beside);
+  EXPECT_FALSE(beside->seen[kThumbTip - 1]);
+}
+
 /// What stands 15 cm before a finger is not the finger.
 TEST(Fingers, AreNotWhatStandsBeforeThem) {
-  Map map;
+  Pictured map;
   map.fill({100, 60, 120, 120}, 1);
   const SeenHand hand = flat_hand(map.geometry_, 1);
   const double x = hand.points[kIndexTip].x_px(), y = hand.points[kIndexTip].y_px();
@@ -83,7 +108,7 @@ TEST(Fingers, AreNotWhatStandsBeforeThem) {
 }
 
 TEST(Fingers, NeedSomeDepth) {
-  Map map;
+  Pictured map;
   const SeenHand hand = flat_hand(map.geometry_, 1);
   EXPECT_FALSE(place_fingers(map.view(), hand, 1.02));
   map.fill({100, 60, 120, 120}, 1.5);
@@ -92,7 +117,7 @@ TEST(Fingers, NeedSomeDepth) {
 
 /// A hand that is not seen goes along with its wrist for five frames; its fingers' doubt grows, and then they are lost.
 TEST(Fingers, GoAlongWithTheWrist) {
-  Map map;
+  Pictured map;
   map.fill({100, 60, 120, 120}, 1);
   const SeenHand hand = flat_hand(map.geometry_, 1);
   Places body = test::standing();

@@ -48,7 +48,7 @@ bool Newcomers::was_refused(Vec3 at) const {
 }
 
 void Newcomers::refuse(Vec3 at) {
-  constexpr std::int64_t kPatience = 6;  // calls
+  constexpr std::int64_t kPatience = 6;  // calls until it is asked about again
   refused_[next_refused_] = {at, call_ + kPatience};
   next_refused_ = (next_refused_ + 1) % refused_.size();
 }

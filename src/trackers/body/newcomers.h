@@ -12,7 +12,7 @@
 namespace duo::body {
 
 /// Asks the network of bodies about what is upright and is none of those who are tracked. What is no person is left alone for
-/// some seconds.
+/// the next five calls.
 class Newcomers {
  public:
   /// Looks at one of them, the nearest first. `tracked`: the middles of trunks. Returns where a person is, for the next look.

@@ -28,10 +28,9 @@ TrunkColor color_of(const FrameView& frame, const TrunkCorners& corners) {
   for (int j = 0; j < kSide; ++j)
     for (int i = 0; i < kSide; ++i) {
       const double a = 0.2 + 0.6 * i / (kSide - 1), b = 0.15 + 0.7 * j / (kSide - 1);
-      const auto [x, y] = place_in(corners, a, b);
-      if (!(x >= 0 && y >= 0 && x <= frame.picture.width() - 1 && y <= frame.picture.height() - 1)) continue;
-      if (frame.is_covered({x, y})) continue;
-      const Rgb8 pixel = frame.picture.at(static_cast<int>(y + 0.5), static_cast<int>(x + 0.5));
+      const Vec2 at = place_in(corners, a, b);
+      if (!frame.shows(at) || frame.is_covered(at)) continue;
+      const Rgb8 pixel = frame.picture.at(static_cast<int>(at.y + 0.5), static_cast<int>(at.x + 0.5));
       red += pixel.r;
       green += pixel.g;
       blue += pixel.b;
