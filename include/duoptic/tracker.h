@@ -41,8 +41,8 @@ std::string joint_names(std::span<const Skeleton* const> skeletons);
 
 struct TrackerSetup {
   Rig rig;
-  Rectified rectified;  // of the frames to come
-  double frame_s = 1.0 / 30;
+  Rectified rectified;                      // of the frames to come
+  double frame_s = 1.0 / 30;                // from one tracked frame to the next
   int threads = 1;                          // that the tracker may use; the result does not depend on them
   bool live = false;                        // a result that comes late is worth less
   BodyModel body_model = BodyModel::kFull;  // of trackers that have networks

@@ -53,6 +53,13 @@ struct Pipeline::State {
 
 namespace {
 
+/// From one tracked frame to the next. Where frames are left out at will it stays below the second that trackers can bridge; a
+/// source that is that slow by itself is theirs to refuse.
+double tracked_frame_s(double frame_s, std::int64_t every) {
+  constexpr double kMost_s = 0.99;
+  return std::max(frame_s, std::min(frame_s * static_cast<double>(every), kMost_s));
+}
+
 void add_wants(const Wants& from, Wants& to) {
   to.color |= from.color;
   to.depth |= from.depth;
@@ -118,8 +125,8 @@ Result<void> Pipeline::State::prepare_tracker() {
   // The engine makes the next frame on all threads meanwhile: a layer of a network that is shared by as many would wait for
   // them.
   const int threads = std::max(1, setup.threads / 2);
-  return tracker->prepare(
-      {*setup.frames.rig, header.rectified, header.frame_s, threads, header.live, setup.body_model, setup.frames.time_stages});
+  return tracker->prepare({*setup.frames.rig, header.rectified, tracked_frame_s(header.frame_s, setup.every), threads,
+                           header.live, setup.body_model, setup.frames.time_stages});
 }
 
 /// Of files: what lies before the first wanted pair. The rig is judged by the first second and frames are aligned by the pair

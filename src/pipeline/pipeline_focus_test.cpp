@@ -33,6 +33,40 @@ class Walker final : public Tracker {
   Person person_;
 };
 
+/// Tells what it was prepared for.
+class Prepared final : public Tracker {
+ public:
+  explicit Prepared(double& frame_s) : frame_s_(frame_s) {}
+  const char* name() const override { return "prepared"; }
+  std::span<const Skeleton* const> skeletons() const override { return {}; }
+  Wants wants() const override { return {}; }
+  Result<void> prepare(const TrackerSetup& setup) override {
+    frame_s_ = setup.frame_s;
+    return {};
+  }
+  Result<std::span<const Person>> select(const Frame&, std::span<const Selection>) override { return track({}); }
+  std::span<const Person> track(const Frame&) override { return {}; }
+  void reset() override {}
+
+ private:
+  double& frame_s_;
+};
+
+// Velocities are right where frames are left out; trackers refuse a second and more.
+TEST(PipelineTracker, IsToldTheTimeFromOneOfItsFramesToTheNext) {
+  const double frame_s = Clip().frame_s();
+  ASSERT_LT(3 * frame_s, 0.99);
+  for (const auto& [every, want_s] : {std::pair{1, frame_s}, std::pair{3, 3 * frame_s}, std::pair{1000, 0.99}}) {
+    PipelineSetup setup = pipeline_setup();
+    setup.every = every;
+    double told_s = 0;
+    const auto pipeline = Pipeline::open(std::make_unique<Clip>(), std::move(setup), std::make_unique<Prepared>(told_s));
+    ASSERT_TRUE(pipeline) << pipeline.error().what;
+    EXPECT_DOUBLE_EQ(told_s, want_s) << every;
+    EXPECT_DOUBLE_EQ(pipeline->header().frame_s, frame_s) << "the source's";
+  }
+}
+
 // Which frames are matched around whom does not depend on who makes how many at once.
 TEST(PipelineFocus, FollowsPeople) {
   const auto frames = [](int threads, bool focus) {
