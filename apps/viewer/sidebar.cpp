@@ -21,7 +21,7 @@ void title(const char* text) {
   ImGui::PopFont();
 }
 
-/// Above all that may lie below the window's end.
+/// Puts trouble at the top, where no small window cuts it off.
 void put_trouble(const PlayerStatus& status) {
   for (const std::string* text : {&status.problem, &status.rig_news})
     if (!text->empty()) put_text(kBad, *text);

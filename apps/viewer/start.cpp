@@ -120,7 +120,7 @@ std::optional<SourceChoice> StartPage::draw() {
   ImGui::PopStyleVar();
   if (!no_cameras_.empty()) {
     ImGui::Dummy({0, 6 * scale});
-    put_text(kText, "No cameras", title_font());
+    put_text(kText, "No pair of cameras", title_font());
     put_text(kFaint, no_cameras_ + ". What is plugged in appears here.");
   }
   ImGui::End();

@@ -40,7 +40,8 @@ void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range
 Rgb8 shade_of(JointId joint);
 
 /// The rectified picture, dark and gray, with the persons' pixels in the shade of the joint they are nearest to. A person is
-/// what lies within the joints' radius of the bones between joints that are not lost; of the trunk's within 1.4 times as much.
+/// what lies within the joints' radius of the bones between joints that are not lost; of trunk, neck and head within
+/// 1.4 times as much.
 ///
 /// Shape  dst like the frame's maps; of these it needs disparity and colour
 void draw_regions(const Frame& frame, const Rectified& rectified, std::span<const Person> people, View<Rgb8> dst);

@@ -28,9 +28,9 @@ std::vector<Bone> bones_of(std::span<const Person> people) {
       const bool joined = joint.parent >= 0 && person.joints[parent].state != JointState::kLost;
       const Vec3 along_m = joined ? person.joints[parent].p_in_rig_m - from.p_in_rig_m : Vec3{};
       const double length2 = dot(along_m, along_m);
-      constexpr double kTrunk = 1.4;  // whose skin is farther beside its bones than before them
+      constexpr double kWide = 1.4;  // of trunk, neck and head, whose skin is farther beside its bones than before them
       bones.push_back({&joint, joined ? &person.skeleton->joints[parent] : &joint, from.p_in_rig_m, along_m,
-                       length2 > 0 ? 1 / length2 : 0, joint.side == Side::kMiddle ? kTrunk : 1});
+                       length2 > 0 ? 1 / length2 : 0, joint.side == Side::kMiddle ? kWide : 1});
     }
   return bones;
 }

@@ -33,8 +33,9 @@ class CpuBudget {
   static constexpr double kSecond_ns = 1e9, kSaved_ns = 1e8;
   double cores_;
   bool begun_ = false;
-  double owed_ns_ = 0;                                    // of CPU time; below 0: saved
-  std::int64_t wall_ns_ = 0, cpu_ns_ = 0, taken_ns_ = 0;  // of the last pair, and of the last one that was taken
+  double owed_ns_ = 0;                     // of CPU time; below 0: saved
+  std::int64_t wall_ns_ = 0, cpu_ns_ = 0;  // both clocks at the last pair
+  std::int64_t taken_ns_ = 0;              // wall clock at the last pair that was taken
 };
 
 }  // namespace duo

@@ -82,7 +82,7 @@ std::string text_of(const Person& person) {
   std::vector<std::string> joints;
   for (std::size_t j = 0; j < person.count(); ++j)
     joints.push_back(fmt::format(R"("{}":{})", person.skeleton->joints[j].name, text_of(person.joints[j])));
-  const bool has_fingers = person.skeleton != nullptr && person.skeleton->index_of(JointId::kLeftThumbTip).has_value();
+  const bool has_fingers = person.skeleton->index_of(JointId::kLeftThumbTip).has_value();
   return fmt::format(R"({{"id":{},"skeleton":"{}",{}"joints":{{{}}}}})", person.id, person.skeleton->name,
                      has_fingers ? pinch_text(person) : "", fmt::join(joints, ","));
 }
