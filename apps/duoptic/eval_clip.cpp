@@ -131,9 +131,11 @@ Result<Exit> run(const Options& options) {
     }
     TrackingOptions tracking = options.tracking.or_tracker("body");
     std::vector<std::string> trackers = {tracking.tracker};
-    if (options.compare) trackers = tracker_names();
-    const std::string_view twin = options.tracking.hands ? "body" : "body_hands";  // finds the same people
-    std::erase(trackers, twin);
+    if (options.compare) {
+      trackers = tracker_names();
+      const std::string_view twin = options.tracking.hands ? "body" : "body_hands";  // finds the same people
+      std::erase(trackers, twin);
+    }
     for (const std::string& tracker : trackers) {
       tracking.tracker = tracker;
       DUO_TRY_ASSIGN(PipelineSetup setup, setup_of(tracking, folder, rig));
