@@ -60,6 +60,7 @@ class Gradients {
   static int turn(int y) { return y / 2 % kRows; }
 
   void tap_row(int y) {
+    if (w_ < 4) return;  // no tap has all its neighbours, nor a gather its four bytes: all stay 0
     const hn::CappedTag<std::int32_t, 1> one;
     const D many;
     const int n = static_cast<int>(hn::Lanes(many));
@@ -78,8 +79,8 @@ class Gradients {
     const auto disparity = hn::PromoteTo(d, hn::LoadU(du16, in_.d_q4.row(y) + x));
     const auto at_q4 = hn::Sub(hn::ShiftLeft<4>(hn::Iota(d, x)), disparity);
     const auto r = hn::ShiftRight<4>(at_q4), f = hn::And(at_q4, constant(15)), rest = hn::Sub(constant(16), f);
-    // A hole's place is far left of the picture.
-    const auto inside = hn::And(hn::Gt(r, constant(0)), hn::Lt(r, constant(w_ - 2)));
+    const auto known = hn::Ne(disparity, constant(std::int32_t{Disparity::kNone}));
+    const auto inside = hn::And(known, hn::And(hn::Gt(r, constant(0)), hn::Lt(r, constant(w_ - 2))));
     const auto four = hn::GatherOffset(d, reinterpret_cast<const std::int32_t*>(in_.right.row(y) - 1),
                                        hn::IfThenElse(inside, r, constant(1)));
     const auto byte = constant(255);

@@ -114,7 +114,7 @@ TEST(LucasKanade, SimdAgrees) {
   std::mt19937 rng(31);
   Pool one(1), two(2);
   auto sizes = test::awkward_sizes();
-  sizes.insert(sizes.end(), {{6, 14}, {32, 12}, {70, 20}});
+  sizes.insert(sizes.end(), {{6, 14}, {32, 12}, {70, 20}, {4200, 3}});  // beyond column 4096 a hole's place is in the picture
   for (const Size size : sizes)
     for (const test::Fill how : test::kFills) {
       const LikeViews inputs(size, how, rng);
@@ -133,6 +133,21 @@ TEST(LucasKanade, SimdAgrees) {
       });
       if (HasFailure()) return;
     }
+}
+
+// For the address sanitizer.
+TEST(LucasKanade, NothingBehindNarrowPicturesIsRead) {
+  for (const int width : {3, 4, 5}) {
+    const Size size{width, 1};
+    const std::vector<std::uint8_t> row(static_cast<std::size_t>(width), 7);
+    const std::vector<std::uint16_t> d_q4(row.size());
+    std::vector<std::uint16_t> out(row.size(), 1);
+    Pool pool(1);
+    simd::LucasKanadeScratch scratch(size, 1);
+    const View<const std::uint8_t> gray(row.data(), size, width);
+    simd::lucas_kanade(pool, {gray, gray, {d_q4.data(), size, width}, 2}, scratch, {out.data(), size, width});
+    EXPECT_EQ(out, d_q4) << width;
+  }
 }
 
 TEST(LucasKanade, OnlyRowsThatAreNeeded) {
