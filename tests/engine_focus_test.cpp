@@ -111,6 +111,19 @@ TEST(Focus, EnginesAgreeAndNothingLiesOutside) {
   }
 }
 
+TEST(Focus, EndsWithPrepare) {
+  const SyntheticPair scene = room();
+  const duo::Setup setup = raw_setup(scene, kChoices[0]);
+  for (const char* name : {"ref", "simd"}) {
+    const auto engine = prepared(name, 1, setup);
+    const auto whole = run(*engine, scene.pair);
+    engine->focus({{30, 20, 70, 50}, 4, 20});
+    EXPECT_EQ(run(*engine, scene.pair)->disparity.d_q4.at(0, 0), Disparity::kNone) << name;
+    ASSERT_TRUE(engine->prepare(setup));
+    test::expect_same<std::uint16_t>(whole->disparity.d_q4, run(*engine, scene.pair)->disparity.d_q4, name);
+  }
+}
+
 // More sizes than an engine keeps, one after the other and back.
 TEST(Focus, ComesBackToSizesThatItHadForgotten) {
   const SyntheticPair scene = room();

@@ -170,6 +170,10 @@ TEST(VulkanEngine, TheCpuLooksAroundPeople) {
   const auto want = run(*reference, scene.pair);
   EXPECT_EQ(want->disparity.d_q4.at(0, 0), Disparity::kNone);
   expect_same_frame(*want, *vulkan->collect(), "part");
+  // Focus and CPU end with the next setup.
+  ASSERT_TRUE(vulkan->prepare(setup) && reference->prepare(setup));
+  EXPECT_STREQ(vulkan->name(), "vulkan");
+  expect_same_frame(*run(*reference, scene.pair), *run(*vulkan, scene.pair), "whole again");
 }
 
 // What stays on the device is there for the two last frames; whoever uses an older one, or one whose engine is gone, is told.

@@ -33,6 +33,7 @@ class RefEngine final : public Engine {
     frames_ = ObjectPool<Frame>(1 + kSpareFrames, [this] { return make_frame(prepared_); });
     Matchers::make(prepared_.matcher, match_setup(prepared_), matcher_);
     focused_ = {};
+    focus_ = {};
     if (setup.fill) {
       unfilled_ = Image<std::uint16_t>(prepared_.size);
     }

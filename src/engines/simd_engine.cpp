@@ -92,7 +92,10 @@ class SimdEngine final : public Engine {
     rest();
     std::swap(prepared_, checked);
     const Result<void> made = make_frames();
-    if (made) return {};
+    if (made) {
+      focus_ = {};
+      return {};
+    }
     rest();
     std::swap(prepared_, checked);
     if (was_prepared) DUO_CHECK(make_frames());  // there was memory for that

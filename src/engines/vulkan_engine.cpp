@@ -71,6 +71,7 @@ class VulkanEngine final : public Engine {
       }
     }
     prepared_ = std::move(prepared);
+    focus_ = {};
     first_ = count_ = 0;
     slots_ = work_ != nullptr ? work_->slots() : vk::Frames::kInFlight;
     if (work_ == nullptr) return prepare_cpu();

@@ -44,6 +44,7 @@ struct Pipeline::State {
   const PairSource& source() const { return frames ? frames->source() : *waiting; }
 
   Result<void> prepare();
+  Result<void> prepare_engine(const Setup& of_engine);
   Result<void> prepare_tracker();
   Result<void> start();
   Result<FrameStream::Passed> pass_over();
@@ -100,14 +101,20 @@ Result<void> Pipeline::State::prepare() {
   }
   if (setup.threads <= 0) setup.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   DUO_TRY_ASSIGN(engine, make_engine(setup.engine, setup.threads));
-  DUO_TRY(engine->prepare(of_engine));
-  if (setup.focus && engine->can_focus()) engine->focus({});  // from the first frame on
+  DUO_TRY(prepare_engine(of_engine));
   header.engine = engine->name();
   header.device = engine->device();
   header.matcher = of_engine.matcher;
   header.matcher_preset = of_engine.preset;
   if (engine->rectified()) header.rectified = *engine->rectified();
   return prepare_tracker();
+}
+
+Result<void> Pipeline::State::prepare_engine(const Setup& of_engine) {
+  if (frames) return frames->prepare(of_engine, last);  // each of its pairs comes with a focus
+  DUO_TRY(engine->prepare(of_engine));
+  if (setup.focus && engine->can_focus()) engine->focus({});  // from the first frame on
+  return {};
 }
 
 Result<void> Pipeline::State::prepare_tracker() {
@@ -260,10 +267,7 @@ Result<void> Pipeline::set(const std::vector<std::pair<std::string, double>>& pa
   State& s = *state_;
   Setup setup = s.setup.frames;
   setup.parameters = parameters;
-  if (s.frames)
-    DUO_TRY(s.frames->prepare(setup, s.last));
-  else
-    DUO_TRY(s.engine->prepare(setup));
+  DUO_TRY(s.prepare_engine(setup));
   s.setup.frames = std::move(setup);
   return {};
 }
