@@ -195,10 +195,13 @@ TEST(RigImports, ReadsRosMessagesOfRectifiedPictures) {
 TEST(RigImports, RefusesRosMessagesOfPartsOfTheSensor) {
   const std::string left = kRos, right = replaced(left, "p: [500.0, 0.0, 320.0, 0.0", "p: [500.0, 0.0, 320.0, -50.0");
   const auto with = [&](const std::string& more) { return left + more + "---\n" + right; };
-  for (const char* whole : {"binning_x: 0\nbinning_y: 0\nroi:\n  x_offset: 0\n  width: 0\n  height: 0\n", "binning_x: 1\n"})
+  for (const char* whole : {"binning_x: 0\nbinning_y: 0\nroi:\n  x_offset: 0\n  width: 0\n  height: 0\n", "binning_x: 1\n",
+                            "roi:\n  x_offset: 0\n  y_offset: 0\n  width: 640\n  height: 480\n"})
     EXPECT_TRUE(parse_rig(with(whole), "ros")) << whole;
   expect_refused(with("binning_x: 2\nbinning_y: 2\n"), "left camera: its pictures are binned");
-  expect_refused(with("roi:\n  x_offset: 100\n  width: 300\n  height: 200\n"), "of a part of the sensor");
+  for (const char* part : {"  x_offset: 100\n  width: 300\n  height: 200\n", "  width: 640\n  height: 400\n",
+                           "  width: 600\n  height: 0\n", "  y_offset: 8\n  width: 640\n  height: 480\n"})
+    expect_refused(with(std::string("roi:\n") + part), "of a part of the sensor");
 }
 
 TEST(RigImports, ReadsMiddlebury) {

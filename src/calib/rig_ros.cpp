@@ -24,8 +24,8 @@ struct CameraInfo {
   std::array<double, 12> projection = {};  // row by row
 };
 
-/// What a message says of pictures that are not the whole sensor's; empty: nothing.
-std::string part_of_sensor(const YAML::Node& map) {
+/// What a message says of pictures, of `size`, that are not the whole sensor's; empty: nothing.
+std::string part_of_sensor(const YAML::Node& map, const std::array<double, 2>& size) {
   const auto number = [](const YAML::Node& node) {
     double value = 0;
     return node.IsDefined() && YAML::convert<double>::decode(node, value) ? value : 0;
@@ -33,7 +33,9 @@ std::string part_of_sensor(const YAML::Node& map) {
   if (number(map["binning_x"]) > 1 || number(map["binning_y"]) > 1) return "binned";
   const YAML::Node roi = map["roi"];
   if (!roi.IsDefined() || !roi.IsMap()) return {};
-  return number(roi["width"]) > 0 || number(roi["height"]) > 0 ? "of a part of the sensor (roi)" : "";
+  const auto part = [&](const char* key, double whole) { return number(roi[key]) != 0 && number(roi[key]) != whole; };
+  const bool moved = number(roi["x_offset"]) != 0 || number(roi["y_offset"]) != 0;
+  return moved || part("width", size[0]) || part("height", size[1]) ? "of a part of the sensor (roi)" : "";
 }
 
 // Files and messages spell their keys differently: camera_matrix, K (ROS 1), k (ROS 2).
@@ -58,7 +60,7 @@ Result<CameraInfo> read(const YAML::Node& map, const char* side, const std::stri
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
     return rig_error(name, "{} camera: the camera matrix is not [fx 0 cx; 0 fy cy; 0 0 1]", side);
 
-  if (const std::string part = part_of_sensor(map); !part.empty())
+  if (const std::string part = part_of_sensor(map, {width[0], height[0]}); !part.empty())
     return rig_error(name, "{} camera: its pictures are {}; give a camera_info of whole pictures", side, part);
 
   CameraInfo info;
