@@ -237,7 +237,7 @@ std::optional<ForeignKind> foreign_kind(std::string_view head) {
       {4, "jP  \r\n"sv, {"a JPEG 2000 file", kPicture}},
       {0, "\xff\x4f\xff\x51"sv, {"a JPEG 2000 file", kPicture}},
       {0, "GIF8"sv, {"a GIF file", kPicture}},
-      {0, "\x76\x2f\x31\x01"sv, {"a OpenEXR file", kPicture}},
+      {0, "\x76\x2f\x31\x01"sv, {"an OpenEXR file", kPicture}},
       {0, "#?RADIANCE"sv, {"a Radiance HDR file", kPicture}},
       {0, "8BPS"sv, {"a Photoshop file", kPicture}},
       {0, "II+\0"sv, {"a BigTIFF file", kPicture}},
@@ -260,6 +260,7 @@ std::optional<ForeignKind> foreign_kind(std::string_view head) {
       {0, "\0\0\0\x01\x27"sv, {"bare H.264, which holds no times", kBare}},
       {0, "\0\0\0\x01\x09"sv, {"bare H.264, which holds no times", kBare}},
       {0, "\0\0\0\x01\x40\x01"sv, {"bare H.265, which holds no times", kBare}},
+      {0, "\0\0\x01\x40\x01"sv, {"bare H.265, which holds no times", kBare}},
   };
   for (const Kind& kind : kKinds)
     if (head.size() > kind.at && head.substr(kind.at).starts_with(kind.magic)) return kind.kind;

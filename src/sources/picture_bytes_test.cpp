@@ -277,6 +277,8 @@ TEST(Unsupported, WholeFilesAreNotCalledDamagedAndNeverBlack) {
           "a moving WebP");
   refused("a.h264", std::string("\0\0\0\x01\x67\x64\0\x1f", 8) + std::string(30, 'x'), "bare H.264, which holds no times");
   refused("a.h265", std::string("\0\0\0\x01\x40\x01\x0c", 7) + std::string(30, 'x'), "ffmpeg -r 30 -i");
+  refused("b.h265", std::string("\0\0\x01\x40\x01\x0c", 6) + std::string(30, 'x'), "bare H.265, which holds no times");
+  refused("a.exr", "\x76\x2f\x31\x01" + std::string(30, 'x'), "an OpenEXR file");
   refused("a.y4m", "YUV4MPEG2 W64 H48 F30:1\n" + std::string(64, 'x'), "ffmpeg -i FILE -c copy");
   refused("a.pfm", "Pf\n4 4\n-1\n" + std::string(64, '\0'), "PFM");
   std::string arithmetic = coded(AV_CODEC_ID_MJPEG, AV_PIX_FMT_YUVJ420P);
