@@ -13,6 +13,11 @@ namespace duo {
 struct YuvPlanes {
   static constexpr int kLeast = 16;
   View<const std::uint8_t> y, u, v;
+  bool well_shaped() const {
+    const Size all = y.size(), half{all.width / 2, all.height / 2};
+    return all.width % 2 == 0 && all.height % 2 == 0 && all.width >= kLeast && all.height >= kLeast && u.size() == v.size() &&
+           u.width() == half.width && (u.height() == half.height || u.height() == all.height);
+  }
 };
 
 /// What chroma adds to colours, in 1/8192. BT.601's, in full range: 11485, -2819, -5850, 14516.
@@ -27,8 +32,7 @@ struct YuvWeights {
 // Border   samples continue by those at the edge
 // Threads  one
 // Exact    ref and simd agree bit for bit with libswscale's full, accurate and bit-exact bilinear conversion to RGB24, so that
-// a
-//          picture is the same whichever of them made it: what fits 16 bits here takes 32 there, a pixel at a time
+//          a picture is the same whichever of them made it: what fits 16 bits here takes 32 there, a pixel at a time
 // Source   libswscale's conversion for one row of brightness and two of chroma, as observed; ITU-R BT.601
 namespace ref {
 void yuv_rgb(const YuvPlanes& src, const YuvWeights& weights, View<Rgb8> dst);

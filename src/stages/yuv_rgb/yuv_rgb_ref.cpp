@@ -6,7 +6,7 @@
 namespace duo::ref {
 
 void yuv_rgb(const YuvPlanes& src, const YuvWeights& weights, View<Rgb8> dst) {
-  DUO_CHECK(src.y.size() == dst.size() && src.u.size() == src.v.size() && 2 * src.u.width() == dst.width());
+  DUO_CHECK(src.well_shaped() && src.y.size() == dst.size());
   const int last = src.u.width() - 1;
   for (int y = 0; y < dst.height(); ++y) {
     const ChromaRows rows = chroma_rows(src, y);

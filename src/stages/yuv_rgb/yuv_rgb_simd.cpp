@@ -122,7 +122,7 @@ namespace simd {
 YuvScratch::YuvScratch(int width_in) : width(width_in), u({width / 2 + 64, 1}), v({width / 2 + 64, 1}) {}
 
 void yuv_rgb(const YuvPlanes& src, const YuvWeights& weights, YuvScratch& scratch, View<Rgb8> dst) {
-  DUO_CHECK(src.y.size() == dst.size() && src.u.size() == src.v.size() && 2 * src.u.width() == dst.width());
+  DUO_CHECK(src.well_shaped() && src.y.size() == dst.size());
   DUO_CHECK(scratch.width == dst.width());
   HWY_DYNAMIC_DISPATCH(yuv_rgb_rows)(src, weights, scratch, dst);
 }
