@@ -21,7 +21,7 @@ struct What {
 /// time and busy cores of `duoptic track` with one thread and with two. Means over the clip's frames, medians over the runs,
 /// which take turns.
 ///
-/// Errors  those of load_clip(), open_pairs(), Pipeline and make_json_lines(); no room for the lines
+/// Errors  those of load_rig(), open_pairs(), Pipeline and make_json_lines(); no room for the lines
 Result<nlohmann::json> tables(const What& what);
 
 }  // namespace duo::app::bench_chain

@@ -12,9 +12,10 @@
 
 namespace duo {
 
-/// Judges by three pairs of the first second, in a thread of its own; of a live source again every minute. Of files what it
-/// finds is there from the same pair on in every run: the first that comes 0.9 s after the first, or the end. Where the system
-/// gives no thread the caller's judges; where it gives no memory nothing is found.
+/// Judges by the first pair where that is beyond doubt, else by three pairs of the first second, in a thread of its own; of a
+/// live source again every minute. Of files what it finds is there from the same pair on in every run: the first that comes
+/// 0.9 s after the first, or the end. Where the system gives no thread the caller's judges; where it gives no memory nothing is
+/// found.
 ///
 /// Threads  one caller
 class RigWatch {

@@ -49,8 +49,7 @@ struct PlaneMap {
 /// Exact    ref and simd agree bit for bit, with any number of threads: integers, and random numbers that are a function of
 ///          pixel, sweep and try; an energy is at most 169 * 219 * 107 * 16 < 2^26
 /// Source   Bleyer, Rhemann, Rother, "PatchMatch stereo: stereo matching with slanted support windows", 2011; slanted surfaces
-/// as
-///          in Ogale, Aloimonos, "Shape and the stereo correspondence problem", 2005; weights as in Yoon, Kweon, "Adaptive
+///          as in Ogale, Aloimonos, "Shape and the stereo correspondence problem", 2005; weights as in Yoon, Kweon, "Adaptive
 ///          support-weight approach for correspondence search", 2006. All pixels at once instead of in turn, and energies with
 ///          the paths of semi-global matching instead of colours and gradients, are ours
 struct SlantedPlanes {
