@@ -277,9 +277,9 @@ Result<Exit> run(const Options& options) {
 Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("bench", "Speed of each stage, whole frames and networks, beside OpenCV and XNNPACK");
   const auto options = std::make_shared<Options>();
-  sub->add_option("--what", options->what, "Frames of depth, the networks of duoptic detect, or both")
-      ->check(CLI::IsMember({"all", "frames", "networks"}))
-      ->capture_default_str();
+  CLI::Option* what = sub->add_option("--what", options->what, "Frames of depth, the networks of duoptic detect, or both")
+                          ->check(CLI::IsMember({"all", "frames", "networks"}))
+                          ->capture_default_str();
   sub->add_option("--engine", options->engine, "Which of our engines")
       ->check(CLI::Validator(
           [](std::string& name) {
@@ -288,9 +288,9 @@ Command add(CLI::App& app) {
           },
           "both|ref|simd|vulkan[:DEVICE]"))
       ->capture_default_str();
-  sub->add_option("--size", options->size, "Size of the pictures")
-      ->check(CLI::IsMember({"both", "640x480", "1280x720"}))
-      ->capture_default_str();
+  CLI::Option* size = sub->add_option("--size", options->size, "Size of the pictures")
+                          ->check(CLI::IsMember({"both", "640x480", "1280x720"}))
+                          ->capture_default_str();
   sub->add_option("--instructions", options->instructions,
                   "Use no better ones than these, by a name that duoptic version lists; without it, the best there are")
       ->type_name("NAME");
@@ -303,7 +303,8 @@ Command add(CLI::App& app) {
           ->type_name("DIR")
           ->allow_extra_args(false);
   sub->add_flag("--focus", options->focus, "Of --clip: match around people alone, as duoptic track --focus does")->needs(clip);
-  sub->add_flag("--fine", options->fine, "With the matcher fine of engine simd, too: seconds a frame");
+  CLI::Option* fine = sub->add_flag("--fine", options->fine, "With the matcher fine of engine simd, too: seconds a frame");
+  for (CLI::Option* other : {what, size, fine}) clip->excludes(other);
   sub->add_flag("--json", options->json, "Print it as JSON");
   sub->footer(kFooter);
   return {sub, [options] { return run(*options); }};
