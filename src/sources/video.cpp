@@ -221,10 +221,8 @@ std::string VideoFile::warning() const {
     all = fmt::format("{} picture{} of {} {} damaged: left out", left_out_, left_out_ == 1 ? "" : "s", name_,
                       left_out_ == 1 ? "is" : "are");
   if (interlaced_)
-    all += fmt::format(
-        "{}{} is interlaced: every second row is of another moment; ffmpeg -i {} -vf bwdif -c:v ffv1 whole.mkv "
-        "makes it whole",
-        all.empty() ? "" : "; ", name_, name_);
+    all += fmt::format("{}{} is interlaced, rows of two moments; ffmpeg -i {} -vf bwdif -c:v ffv1 whole.mkv makes it whole",
+                       all.empty() ? "" : "; ", name_, name_);
   return all;
 }
 
