@@ -264,7 +264,7 @@ TEST_F(Running, ARigThatDoesNotFitIsTold) {
   Rig tilted = room.rig;
   tilted.right_from_left = Rigid3{Mat3{{1, 0, 0, 0, c, -s, 0, s, c}}, {}} * room.rig.right_from_left;
   ASSERT_TRUE(save_rig(tilted, at("tilted.json")));
-  const auto red = [](const Image<Rgb8>& window) { return near(window, 1280, 60, 50, kBad); };
+  const auto red = [&](const Image<Rgb8>& window) { return near(window, 1280, 60, 50, kBad); };
 
   start("slow_left.mp4 slow_right.mp4 --rig tilted.json --model lite --paused");
   ASSERT_TRUE(waited([&] { return hues_in(screenshot().view().crop(40, 570, {520, 380})) > 5; }));
