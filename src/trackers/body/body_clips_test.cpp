@@ -100,6 +100,17 @@ Rebuilt rebuild(const std::vector<Person>& persons) {
   return out;
 }
 
+Result<Pipeline> open_clip(const fs::path& folder, const Rig& rig, const char* tracker, BodyModel model) {
+  DUO_TRY_ASSIGN(auto pairs, open_pairs(folder / "left.avi", folder / "right.avi"));
+  PipelineSetup setup;
+  setup.engine = "simd";
+  setup.threads = 2;
+  setup.frames.rig = rig;
+  setup.tracker = tracker;
+  setup.body_model = model;
+  return Pipeline::open(std::move(pairs), std::move(setup));
+}
+
 class BodyClips : public testing::TestWithParam<BodyLimits> {};
 
 TEST_P(BodyClips, WithoutAClick) {
@@ -107,15 +118,7 @@ TEST_P(BodyClips, WithoutAClick) {
   if (!fs::exists(folder)) GTEST_SKIP() << "skipped: no data";
   const auto truth = load_clip(folder);
   ASSERT_TRUE(truth) << truth.error().what;
-  auto pairs = open_pairs(folder / "left.avi", folder / "right.avi");
-  ASSERT_TRUE(pairs) << pairs.error().what;
-  PipelineSetup setup;
-  setup.engine = "simd";
-  setup.threads = 2;
-  setup.frames.rig = truth->rig;
-  setup.tracker = "body";
-  setup.body_model = BodyModel::kFull;
-  auto pipeline = Pipeline::open(std::move(*pairs), std::move(setup));
+  auto pipeline = open_clip(folder, truth->rig, "body", BodyModel::kFull);
   ASSERT_TRUE(pipeline) << pipeline.error().what;
   const Mat3 rig_from_left = pipeline->header().rectified.rig_from_left;
   std::map<std::string_view, Tally> tallies;  // by the part, both sides
@@ -163,15 +166,7 @@ TEST(BodyHands, TheMiddleFingersRootIsWhereThePalmSays) {
   if (!fs::exists(folder)) GTEST_SKIP() << "skipped: no data";
   const auto truth = load_clip(folder);
   ASSERT_TRUE(truth) << truth.error().what;
-  auto pairs = open_pairs(folder / "left.avi", folder / "right.avi");
-  ASSERT_TRUE(pairs) << pairs.error().what;
-  PipelineSetup setup;
-  setup.engine = "simd";
-  setup.threads = 2;
-  setup.frames.rig = truth->rig;
-  setup.tracker = "body_hands";
-  setup.body_model = BodyModel::kLite;
-  auto pipeline = Pipeline::open(std::move(*pairs), std::move(setup));
+  auto pipeline = open_clip(folder, truth->rig, "body_hands", BodyModel::kLite);
   ASSERT_TRUE(pipeline) << pipeline.error().what;
   const Mat3 rig_from_left = pipeline->header().rectified.rig_from_left;
   std::vector<double> off_mm;
