@@ -26,7 +26,7 @@ void spin_until(Ready ready) {
 struct Membership {
   const Pool* pool = nullptr;
   int part = 0;
-  int arrived = 0;  // as many as have arrived when all members have ended their part of this thread's last job
+  int arrived = 0;  // as many as have arrived when all members have come to this thread's last meeting
 };
 thread_local Membership membership;
 
@@ -71,7 +71,11 @@ void Pool::run(int count, int grain, Call call, void* context) {
   if (count <= 0) return;
   if (workers_.empty()) return call(context, 0, count, 0);
   const Job job{count, grain, call, context};
-  if (membership.pool == this) return run_as_member(job);
+  if (membership.pool == this) {
+    const auto [begin, end] = job.items(membership.part, parts_);
+    if (begin < end) call(context, begin, end, membership.part);
+    return;
+  }
   const std::int64_t begin_ns = wall_ns();
   const bool alone = in_use_ == 1 || count <= grain;
   {
@@ -96,9 +100,8 @@ void Pool::run(int count, int grain, Call call, void* context) {
 Pool::Member::Member(Pool& pool, int part) { membership = {&pool, part, 0}; }
 Pool::Member::~Member() { membership = {}; }
 
-void Pool::run_as_member(const Job& job) {
-  const auto [begin, end] = job.items(membership.part, parts_);
-  if (begin < end) job.call(job.context, begin, end, membership.part);
+void Pool::meet() {
+  if (membership.pool != this) return;
   const int all = membership.arrived += parts_;
   int arrived = arrived_.fetch_add(1, std::memory_order_acq_rel) + 1;
   if (arrived == all) return arrived_.notify_all();

@@ -49,10 +49,10 @@ class Pool {
     run(count, grain, call, const_cast<void*>(static_cast<const void*>(&f)));
   }
 
-  /// Calls f() on all threads in use at once. Within f, each `rows` is called by all of these threads, in the same order: a
-  /// call runs the thread's own part, and returns when the others have run theirs. What f does outside of `rows`, every thread
-  /// does. For jobs of microseconds that follow each other, as the layers of a network: to wait for each other costs
-  /// such threads 1 us per job, to wake them 5 to 50.
+  /// Calls f() on all threads in use at once. Within f, each `rows` and each `meet` is called by all of these threads, in the
+  /// same order: `rows` runs the thread's own part and returns, `meet` returns when all threads have called it. Jobs of equal
+  /// counts and grains have equal parts. What f does outside of `rows`, every thread does. For jobs of microseconds that follow
+  /// each other, as the layers of a network: to wait for each other costs such threads 1 us, to wake them 5 to 50.
   template <class F>
   void together(F&& f) {
     const auto each = [&](int, int, int part) {
@@ -63,6 +63,8 @@ class Pool {
     arrived_ = 0;
     rows(in_use_, each);
   }
+  /// Outside of `together`, and where the caller is the only thread, it does nothing.
+  void meet();
 
  private:
   using Call = void (*)(void* context, int begin, int end, int part);
@@ -82,7 +84,6 @@ class Pool {
     Member& operator=(const Member&) = delete;
   };
   void run(int count, int grain, Call call, void* context);
-  void run_as_member(const Job& job);
   void run_part(int part);
   void compute(int begin, int end, int part);
   void work(int part);
@@ -91,7 +92,7 @@ class Pool {
   std::condition_variable start_, done_;
   std::atomic<std::uint64_t> round_ = 0;  // written under the mutex, as all that follows
   std::atomic<int> busy_ = 0;             // threads that have not ended this round
-  std::atomic<int> arrived_ = 0;          // members that have ended a job of what runs together, over all jobs
+  std::atomic<int> arrived_ = 0;          // members that have come to a meeting, over all meetings of what runs together
   int in_use_ = 1;                        // the caller's
   int parts_ = 1;                         // of this round
   bool stop_ = false;

@@ -102,7 +102,7 @@ TEST(Pool, ThreadsThatRestedDoNotWorkTwice) {
   }
 }
 
-// Each step reads what a neighbour's thread wrote in the step before; a job of one item is done by one thread.
+// Each step reads what a neighbour's thread wrote before the last meeting; a job of one item is done by one thread.
 TEST(Pool, StepsThatRunTogetherWaitForEachOther) {
   constexpr int kCount = 1000, kSteps = 500;
   for (const int threads : {1, 2, 5}) {
@@ -119,6 +119,7 @@ TEST(Pool, StepsThatRunTogetherWaitForEachOther) {
             for (int i = begin; i < end; ++i) after[i] = before[(i + 1) % kCount] + 1;
           });
           pool.rows(1, [&](int, int) { ++alone; });
+          pool.meet();
         }
       });
       for (int i = 0; i < kCount; ++i) ASSERT_EQ(even[i], (i + kSteps) % kCount + kSteps) << threads << " threads";

@@ -1,18 +1,16 @@
 // The rows of a tensor, spread over threads.
 #pragma once
 
-#include <algorithm>
-
 #include "core/pool.h"
 #include "core/tensor.h"
 
 namespace duo {
 
-/// Calls rows(begin, end) for all rows of `y`. Where less is to be done than threads take to wait for each other, for all at once.
+/// Calls rows(begin, end) for all rows of `y`. A thread gets the same rows of all tensors of one height, so that a layer whose rows
+/// are made from the same rows of the layer before need not wait for the other threads.
 template <class Rows>
 void each_tensor_row(Pool& pool, const Tensor16& y, const Rows& rows) {
-  constexpr int kGrainValues = 1 << 12;
-  pool.rows(y.height(), rows, std::max(1, kGrainValues / (y.width() * y.channels())));
+  pool.rows(y.height(), rows);
 }
 
 }  // namespace duo

@@ -8,7 +8,11 @@
 
 namespace duo {
 
-/// Offsets in int16, multiples of 32. Two tensors share memory only when no layer needs both: a tensor is needed from the layer
+/// The chain of each layer. Layers of a chain follow each other, and each makes a row from the same rows of what the chain has made
+/// before and from what other chains have made. So threads that have the same rows of each layer need not meet within a chain.
+std::vector<int> chains_of(const Net& net);
+
+/// Offsets in int16, multiples of 32. Two tensors share memory only when no chain needs both: a tensor is needed from the chain
 /// that writes it (the input from the start) to the last that reads it, an output to the end.
 struct MemoryPlan {
   std::vector<std::size_t> offsets;  // one a tensor

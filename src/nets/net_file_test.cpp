@@ -110,6 +110,36 @@ TEST(NetFile, AMissingFileSaysSo) {
   EXPECT_NE(net.error().what.find("nowhere/body.net"), std::string::npos);
 }
 
+/// A network of layers on tensors of these sizes; layer i reads tensor a[i], and b[i] where that is not -1, and writes tensor i
+/// + 1.
+Net chained(std::vector<Size> sizes, std::vector<LayerWork> works, const std::vector<int>& a, const std::vector<int>& b) {
+  Net net;
+  for (const Size& size : sizes) net.tensors.push_back({size, 32, 0, {}});
+  for (std::size_t i = 0; i < works.size(); ++i)
+    net.layers.push_back({std::move(works[i]), a[i], b[i], static_cast<int>(i) + 1});
+  net.outputs.push_back({"out", static_cast<int>(works.size())});
+  return net;
+}
+
+// Windows and other sizes begin a chain, products and sums of single pixels go on, one row of pixels stands for itself.
+TEST(MemoryPlan, LayersOfSinglePixelsGoOnWithTheirChain) {
+  const Size large{8, 8}, small{4, 4}, one{1, 1};
+  std::vector<LayerWork> works = {Depthwise16{}, Matmul16{}, Add16{}, Depthwise16{}, Matmul16{}, Matmul16{}, Matmul16{}};
+  const Net net = chained({large, large, large, large, small, small, one, one}, std::move(works), {0, 1, 2, 3, 4, 5, 6},
+                          {-1, -1, 0, -1, -1, -1, -1});
+  EXPECT_EQ(chains_of(net), (std::vector<int>{0, 0, 0, 1, 1, 2, 3}));
+}
+
+// A thread may write the product of its rows while another still reads what the windows read: so three tensors lie apart,
+// though no layer needs more than two.
+TEST(MemoryPlan, TensorsOfAChainLieApart) {
+  const Size size{8, 8};
+  const MemoryPlan plan = plan_memory(chained({size, size, size}, {Depthwise16{}, Matmul16{}}, {0, 1}, {-1, -1}));
+  EXPECT_EQ(plan.count, 3u * 8 * 8 * 32);
+  const MemoryPlan windows = plan_memory(chained({size, size, size}, {Depthwise16{}, Depthwise16{}}, {0, 1}, {-1, -1}));
+  EXPECT_EQ(windows.count, 2u * 8 * 8 * 32);
+}
+
 // No tensor's memory is another's while both are needed; by hand for the small network: input 12 and results 2 and 1 values,
 // each in blocks of 32: the input and the second result may share.
 TEST(MemoryPlan, TensorsThatAreNeededTogetherLieApart) {

@@ -55,7 +55,11 @@ void pack_layer(Layer& layer, std::span<std::int32_t> memory) {
 }  // namespace
 
 NetRun::NetRun(const Net& net, Loops loops)
-    : net_(&net), loops_(loops), plan_(plan_memory(net)), memory_({static_cast<int>(plan_.count) + 64, 1}) {
+    : net_(&net),
+      loops_(loops),
+      chains_(chains_of(net)),
+      plan_(plan_memory(net)),
+      memory_({static_cast<int>(plan_.count) + 64, 1}) {
   for (const NetLayer& layer : net.layers) works_.push_back(layer.work);
   if (loops_ == Loops::kPlain) return;
   const auto words = [](const LayerWork& work) { return std::visit([](const auto& layer) { return words_of(layer); }, work); };
@@ -85,6 +89,7 @@ void NetRun::run(Pool& pool) {
 
 void NetRun::run_layers(Pool& pool) {
   for (std::size_t i = 0; i < works_.size(); ++i) {
+    if (i > 0 && chains_[i] != chains_[i - 1]) pool.meet();
     const NetLayer& layer = net_->layers[i];
     Tensor16 x = tensor(layer.a);
     const Tensor16 y = tensor(layer.y);

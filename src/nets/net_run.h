@@ -31,6 +31,7 @@ class NetRun {
 
   const Net* net_;
   Loops loops_;
+  std::vector<int> chains_;  // of each layer
   MemoryPlan plan_;
   Image<std::int16_t> memory_;    // one row
   std::vector<LayerWork> works_;  // the net's layers, packed for the loops

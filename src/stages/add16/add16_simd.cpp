@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/check.h"
+#include "core/tensor_rows.h"
 #include "stages/add16/add16.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -61,9 +62,7 @@ void add16(Pool& pool, const Add16& layer, ConstTensor16 a, ConstTensor16 b, Ten
   DUO_CHECK(a.size() == y.size() && b.size() == y.size());
   DUO_CHECK(a.channels() == y.channels() && b.channels() <= y.channels());
   const auto pixels = HWY_DYNAMIC_DISPATCH(add_pixels);
-  const int grain = std::max(1, (1 << 12) / y.channels());  // values: less is added while threads wait for each other
-  pool.rows(
-      y.pixels(), [&](int begin, int end) { pixels(layer, a, b, y, begin, end); }, grain);
+  each_tensor_row(pool, y, [&](int begin, int end) { pixels(layer, a, b, y, begin * y.width(), end * y.width()); });
 }
 
 }  // namespace simd

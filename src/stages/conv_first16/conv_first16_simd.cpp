@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/check.h"
+#include "core/tensor_rows.h"
 #include "stages/conv_first16/conv_first16.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -108,7 +109,7 @@ void conv_first16(Pool& pool, const ConvFirst16& layer, ConstTensor16 x, Tensor1
   DUO_CHECK(x.channels() == 3 && y.channels() == layer.outputs && layer.packed.size() == packed_words(layer));
   DUO_CHECK(x.width() == 2 * y.width() && x.height() == 2 * y.height());
   const auto rows = HWY_DYNAMIC_DISPATCH(first_rows);
-  pool.rows(y.height(), [&](int begin, int end) { rows(layer, x, y, begin, end); });
+  each_tensor_row(pool, y, [&](int begin, int end) { rows(layer, x, y, begin, end); });
 }
 
 }  // namespace simd

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/check.h"
+#include "core/tensor_rows.h"
 #include "stages/depthwise16/depthwise16.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -39,14 +40,15 @@ class ChannelGroup {
       }
   }
 
-  void rows(int oy) {
+  // Rows oy and oy + 1, where oy_end allows it.
+  void rows(int oy, int oy_end) {
     const int y_first = oy * kStride - layer_.pad_top;
     const bool inside = y_first >= 0 && y_first + kRows::kInputs <= x_.height();
     if (!inside || !filled_inside_) fill(y_first);
     filled_inside_ = inside;
     for (int row = 0; row < 2 * kRows::kPairs; ++row)
       row_[row] = x_.pixel(std::clamp(y_first + row, 0, x_.height() - 1), 0) + c_;
-    std::int16_t* out[2] = {y_.pixel(oy, 0) + c_, oy + 1 < y_.height() ? y_.pixel(oy + 1, 0) + c_ : nullptr};
+    std::int16_t* out[2] = {y_.pixel(oy, 0) + c_, oy + 1 < oy_end ? y_.pixel(oy + 1, 0) + c_ : nullptr};
     const int width = y_.width();
     // Columns of results whose windows lie inside.
     const int begin = std::min((layer_.pad_left + kStride - 1) / kStride, width);
@@ -128,7 +130,7 @@ void channels(D, const Depthwise16& layer, ConstTensor16 x, Tensor16 y, int oy_b
   constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
   for (; c + kLanes <= c_end; c += kLanes) {
     ChannelGroup<kWindow, kStride, D> group(layer, x, y, c);
-    for (int oy = oy_begin; oy < oy_end; oy += 2) group.rows(oy);
+    for (int oy = oy_begin; oy < oy_end; oy += 2) group.rows(oy, oy_end);
   }
   if (c == c_end) return;
   if constexpr (kLanes > 8)
@@ -158,17 +160,12 @@ void depthwise16(Pool& pool, const Depthwise16& layer, ConstTensor16 x, Tensor16
   DUO_CHECK((layer.window == 3 || layer.window == 5) && (layer.stride == 1 || layer.stride == 2));
   const auto part = HWY_DYNAMIC_DISPATCH(depthwise_part);
   // Bands of so many rows of a group of channels that preparing the group's weights does not count.
-  const int band = std::max(4, 128 / y.width() / 2 * 2), bands = (y.height() + band - 1) / band;
-  const int groups = (layer.channels + kDepthwiseGroup - 1) / kDepthwiseGroup;
-  const auto run = [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      const int oy = i / groups * band, c = i % groups * kDepthwiseGroup;
-      part(layer, x, y, oy, std::min(oy + band, y.height()), c, std::min(c + kDepthwiseGroup, layer.channels));
-    }
-  };
-  constexpr std::int64_t kFewProducts = 1 << 15;  // as long as threads wait for each other
-  const bool few = std::int64_t{y.pixels()} * layer.channels * layer.window * layer.window < kFewProducts;
-  pool.rows(bands * groups, run, few ? bands * groups : 1);
+  const int band = std::max(4, 128 / y.width() / 2 * 2);
+  each_tensor_row(pool, y, [&](int begin, int end) {
+    for (int oy = begin; oy < end; oy += band)
+      for (int c = 0; c < layer.channels; c += kDepthwiseGroup)
+        part(layer, x, y, oy, std::min(oy + band, end), c, std::min(c + kDepthwiseGroup, layer.channels));
+  });
 }
 
 }  // namespace simd

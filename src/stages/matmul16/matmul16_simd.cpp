@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/check.h"
+#include "core/tensor_rows.h"
 #include "stages/matmul16/matmul16.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -125,17 +126,12 @@ void matmul16(Pool& pool, const Matmul16& layer, ConstTensor16 x, Tensor16 y) {
   DUO_CHECK(x.channels() == layer.inputs && y.channels() == layer.outputs && x.pixels() == y.pixels());
   DUO_CHECK(layer.inputs % 2 == 0 && layer.packed.size() == packed_words(layer));
   const auto part = HWY_DYNAMIC_DISPATCH(matmul_part);
-  constexpr int kGrainPixels = 8, kGrainOutputs = 2 * kMatmulBlock, kFewPixels = 32;
-  constexpr std::int64_t kFewProducts = 1 << 16;  // as long as threads wait for each other
-  const int pixels = x.pixels();
-  const bool few = std::int64_t{pixels} * layer.inputs * layer.outputs < kFewProducts;
-  if (pixels < kFewPixels)
+  if (y.height() == 1)
     pool.rows(
-        layer.outputs, [&](int begin, int end) { part(layer, x, y, 0, pixels, begin, end); },
-        few ? layer.outputs : kGrainOutputs);
+        layer.outputs, [&](int begin, int end) { part(layer, x, y, 0, x.pixels(), begin, end); }, 2 * kMatmulBlock);
   else
-    pool.rows(
-        pixels, [&](int begin, int end) { part(layer, x, y, begin, end, 0, layer.outputs); }, few ? pixels : kGrainPixels);
+    each_tensor_row(pool, y,
+                    [&](int begin, int end) { part(layer, x, y, begin * y.width(), end * y.width(), 0, layer.outputs); });
 }
 
 }  // namespace simd

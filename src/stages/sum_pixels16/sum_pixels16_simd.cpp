@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/check.h"
+#include "core/tensor_rows.h"
 #include "stages/sum_pixels16/sum_pixels16.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -50,9 +51,10 @@ HWY_EXPORT(sum_channels);
 namespace simd {
 
 // One thread: networks have a few thousand values here, fewer than it takes to wake another.
-void sum_pixels16(Pool&, ConstTensor16 x, int shift, Tensor16 y) {
+void sum_pixels16(Pool& pool, ConstTensor16 x, int shift, Tensor16 y) {
   DUO_CHECK(y.pixels() == 1 && x.channels() == y.channels() && shift <= 15 && x.pixels() <= 1 << shift);
-  HWY_DYNAMIC_DISPATCH(sum_channels)(x, shift, y);
+  const auto sum = HWY_DYNAMIC_DISPATCH(sum_channels);
+  each_tensor_row(pool, y, [&](int, int) { sum(x, shift, y); });
 }
 
 }  // namespace simd
