@@ -3,6 +3,7 @@ set(dir ${PROJECT_SOURCE_DIR}/apps/viewer)
 target_sources(duoptic_tool PRIVATE
   ${dir}/calibrating.cpp
   ${dir}/calibration_page.cpp
+  ${dir}/camera_search.cpp
   ${dir}/depth_panel.cpp
   ${dir}/panels.cpp
   ${dir}/pattern_screen.cpp

@@ -7,7 +7,6 @@
 
 #include <filesystem>
 
-#include "duoptic/cameras.h"
 #include "duoptic/interrupt.h"
 #include "style.h"
 
@@ -25,7 +24,7 @@ std::string words_of(const SourceChoice& choice) {
 }
 
 /// Why there are not two cameras that go together, and what to do.
-std::string why_no_pair(const Result<std::vector<CameraInfo>>& cameras) {
+std::string why_no_pair(const CameraSearch::Found& cameras) {
   if (!cameras) return cameras.error().what;
   if (cameras->size() == 1)
     return fmt::format("{}, {}, is the only camera: plug a second one in", source_name((*cameras)[0]), (*cameras)[0].name);
@@ -34,15 +33,15 @@ std::string why_no_pair(const Result<std::vector<CameraInfo>>& cameras) {
 
 }  // namespace
 
-void StartPage::look_for_ways() {
+void StartPage::set_ways() {
   std::vector<Way> out;
   out.push_back({"Without cameras", "A rendered person", "is tracked live", {"synthetic", "", ""}});
-  const auto cameras = find_cameras();
-  const std::vector<CameraPair> pairs = cameras ? camera_pairs(*cameras, CameraWish()) : std::vector<CameraPair>();
-  no_cameras_ = !pairs.empty() ? "" : why_no_pair(cameras);
+  const std::vector<CameraPair> pairs =
+      cameras_ && *cameras_ ? camera_pairs(**cameras_, CameraWish()) : std::vector<CameraPair>();
+  no_cameras_ = !pairs.empty() ? "" : cameras_ ? why_no_pair(*cameras_) : "still looking for them";
   std::string title = "Cameras";
   for (const CameraPair& pair : pairs) {
-    const CameraInfo &left = (*cameras)[pair.left], &right = (*cameras)[pair.right];
+    const CameraInfo &left = (**cameras_)[pair.left], &right = (**cameras_)[pair.right];
     out.push_back({std::exchange(title, ""),
                    fmt::format("{} and {}", source_name(left), source_name(right)),
                    left.name == right.name ? "two of " + left.name : left.name + ", " + right.name,
@@ -57,12 +56,14 @@ void StartPage::look_for_ways() {
 }
 
 std::optional<SourceChoice> StartPage::choose(const std::string& problem) {
-  constexpr double kLookAgain_s = 2;  // for cameras that are plugged in
+  constexpr std::chrono::milliseconds kPatience(300);  // so that what is there stands in the first picture
   problem_ = problem;
-  double looked_s = -kLookAgain_s;
+  CameraSearch search(Window::wake);
+  cameras_ = search.found(kPatience);
+  set_ways();
   window_.set_title("duoptic view: choose a source");
   while (!window_.closing() && !Interrupt::asked()) {
-    if (glfwGetTime() - looked_s >= kLookAgain_s) look_for_ways(), looked_s = glfwGetTime();
+    if (auto news = search.found(); news != cameras_) cameras_ = std::move(news), set_ways();
     Window::wait(ImGui::IsAnyMouseDown() ? 0.01 : 0.1);
     for (const int key : window_.keys()) {
       if (key == GLFW_KEY_Q) return std::nullopt;

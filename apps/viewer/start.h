@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "camera_search.h"
 #include "duoptic/source_choice.h"
 #include "window.h"
 
@@ -24,11 +25,12 @@ class StartPage {
     std::string title, name, note;  // title: of those that follow; empty: as before
     SourceChoice choice;
   };
-  void look_for_ways();
+  void set_ways();
   std::optional<SourceChoice> draw();
   std::optional<SourceChoice> take_dropped();
 
   Window& window_;
+  std::shared_ptr<const CameraSearch::Found> cameras_;  // that ways_ are made of
   std::vector<Way> ways_;
   std::string rig_, problem_, no_cameras_;
   SourceChoice dropped_;  // so far: files may come one after the other
