@@ -159,6 +159,25 @@ TEST_F(Running, AloneItAsksAndRemembers) {
   expect_end(0);
 }
 
+/// In any order; a rig that comes alone waits for pictures.
+TEST_F(Running, AloneItTakesDroppedFiles) {
+  const auto drop = [this](const std::string& files) {
+    return std::system((display() + "timeout 10 '" DUO_DROP_FILES "' " + window_ + files).c_str()) == 0;
+  };
+  const auto file = [](const char* name) { return " '" + at(name).string() + "'"; };
+  start("");
+  wait_for_title("choose a source");
+  EXPECT_TRUE(drop(file("rig.json")));
+  EXPECT_TRUE(drop(file("right.mp4") + file("left.mp4")));
+  ASSERT_TRUE(waited([&] { return told("xdotool getwindowname " + window_).find("choose") == std::string::npos; }));
+  press("q");
+  expect_end(0);
+  EXPECT_TRUE(
+      bytes_of(at("cache/duoptic/recent"))
+          .starts_with(at("left.mp4").string() + "\t" + at("right.mp4").string() + "\t" + at("rig.json").string() + "\n"))
+      << bytes_of(at("cache/duoptic/recent"));
+}
+
 /// One picture of each camera is a stream that has ended when its arms are selected.
 TEST_F(Running, BothArmsOfAStillPicture) {
   start("left.png right.png --rig rig.json --tracker arm -o still.jsonl");
