@@ -70,10 +70,11 @@ Bones make_bones(const Pose& pose, double scale) {
   if (pose.bow_degrees != 0) turn = turn * about_x(pose.bow_degrees);
   out.person_from_torso = Rigid3{{}, hips + pose.hips_m} * Rigid3{turn, {}} * Rigid3{{}, -1.0 * hips};
   const auto torso = [&](double x, double y, double z) { return out.person_from_torso * (scale * Vec3{x, y, z}); };
-  out.pelvis_m = torso(0, -0.94, 0.005);
-  out.neck_m = torso(0, -1.48, 0.015);
-  out.head_m = torso(0, -kHeadHeight_m, -0.01);
-  out.person_from_head = {out.person_from_torso.rotation * about_y(pose.look_degrees) * about_x(pose.nod_degrees), out.head_m};
+  out.pelvis_m = torso(0, -0.926, 0.002);
+  out.neck_m = torso(0, -1.525, 0.04);
+  out.person_from_head = {out.person_from_torso.rotation * about_y(pose.look_degrees) * about_x(pose.nod_degrees),
+                          torso(0, -kHeadHeight_m, -0.01)};
+  out.head_m = out.person_from_head * (scale * Vec3{0, -0.075, 0.04});
   for (int side = 0; side < 2; ++side) {
     const double s = outwards(side);
     const ArmPose& arm = pose.arms[side];

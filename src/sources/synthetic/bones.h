@@ -56,12 +56,12 @@ struct Limb {
 
 struct Bones {
   double scale = 1;                            // of every length, 1 for a person of 1.75 m
-  Rigid3 person_from_torso, person_from_head;  // at rest, the torso's frame is the person's
+  Rigid3 person_from_torso, person_from_head;  // at rest, the torso's frame is the person's; the head's origin is its middle
   std::array<Limb, 2> arms, legs;
   std::array<Vec3, 2> hands_m;  // palm centres
   std::array<Vec3, 2> feet_m;   // where the toes begin
   std::array<Fingers, 2> fingers;
-  Vec3 head_m, neck_m, pelvis_m;
+  Vec3 head_m, neck_m, pelvis_m;  // as in skeletons of animation: the head's bone ends below the crown
 };
 
 /// Lengths in metres of a person of 1.75 m.

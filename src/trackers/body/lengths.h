@@ -26,7 +26,7 @@ inline constexpr std::size_t kBones = 11;
 /// Lengths of one person.
 ///
 /// Units  metres; trunk: between the middles of shoulders and hips; palm: from the wrist to its centre; neck_head: from the
-///        shoulders' middle to the head's centre; head: from the neck to the same
+///        shoulders' middle to the head; head: from the neck to the same
 class Lengths {
  public:
   Lengths();
