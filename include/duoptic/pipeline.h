@@ -150,7 +150,8 @@ class Pipeline {
   std::int64_t count() const;    // pairs of the source; 0: not known
   std::int64_t read() const;     // pairs of the source, before its end
   std::int64_t dropped() const;  // pairs of a live source that nobody took in time, or that were left out for the budget
-  std::string warning() const;   // PairSource::warning()
+  /// PairSource::warning(), and of which camera pictures repeat while the other's move: it hangs, or was slower.
+  std::string warning() const;
 
  private:
   struct State;

@@ -36,7 +36,8 @@ class Source {
   /// Live: pictures that were lost on the way or that nobody took in time; any thread may ask.
   virtual std::int64_t dropped() const { return 0; }
   /// Live: what there is to say of the camera now (away since when, back again, cannot be locked); any thread may ask. Of a
-  /// file: how many of its pictures were damaged and left out so far, and that it is interlaced.
+  /// file: how many of its pictures were damaged and left out so far, that it is interlaced, that a picture file holds more of
+  /// them than the one that is used.
   virtual std::string warning() const { return {}; }
   /// Fills `into` with the next picture; its memory is used again when it already has the right size.
   virtual Result<Next> next(Picture& into) = 0;

@@ -8,6 +8,13 @@
 
 namespace duo {
 
+/// A picture with what its pixels differ by from left to right and from top to bottom, half of both neighbours' difference; 0
+/// on the border.
+struct SlopedPixel {
+  float value, slope_x, slope_y, none;  // none: 0, so that four values are read at once
+};
+void put_slopes(View<const float> picture, Image<SlopedPixel>& out);
+
 /// Where the patch around `left_px` lies in the right picture, near `right_px`. There it may be stretched and sheared along the
 /// rows (a wall seen from two places), brighter and of more contrast.
 ///
@@ -17,6 +24,7 @@ namespace duo {
 /// Units   px; the patch has 2 radius_px + 1 rows and columns
 /// Source  Lucas, Kanade, "An iterative image registration technique", 1981; with gain and offset as in Baker, Matthews,
 ///         "Lucas-Kanade 20 years on", part 3, 2003
-std::optional<Vec2> align_match(View<const float> left, Vec2 left_px, View<const float> right, Vec2 right_px, int radius_px);
+std::optional<Vec2> align_match(View<const float> left, Vec2 left_px, View<const SlopedPixel> right, Vec2 right_px,
+                                int radius_px);
 
 }  // namespace duo

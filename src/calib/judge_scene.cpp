@@ -19,28 +19,32 @@ constexpr double kLeastCovered = 0.2;
 Error scene_error(const std::string& what) { return {ErrorCode::kBadInput, "cannot judge the rig by this scene: " + what}; }
 
 /// Differences of rows, signed, by the part of the left picture that they lie in: their medians' root mean square, less what
-/// medians of so few points have by noise alone. The pairs of a still scene show the same points: they count once.
+/// medians of so few points have by noise alone. The pairs of a still scene show the same points: they count once. The worst
+/// part does not count: a few wrong matches, or somebody who moved between two shutters, make the rows of one part wrong, a
+/// camera that was turned those of all.
 double systematic_row_px(const Evidence& evidence, const std::vector<double>& errors) {
   constexpr int kColumns = 4, kRows = 3;
-  constexpr std::size_t kFewest = 5;
+  constexpr std::size_t kFewest = 5, kFewestParts = 4;
   constexpr double kMedianVariance = 1.57;  // pi / 2: of a normal distribution, in sigma^2 / n
   std::array<std::vector<double>, kColumns * kRows> parts;
   for (std::size_t i = 0; i < errors.size(); ++i)
     if (std::isfinite(errors[i]))
       parts[static_cast<std::size_t>(cell_of(evidence.matches[i].left_px, evidence.size, kColumns, kRows))].push_back(
           errors[i]);
-  double sum = 0;
-  int count = 0;
+  std::vector<double> squares;
   for (const auto& part : parts) {
     if (part.size() < kFewest) continue;
     const double middle = quantile(std::vector(part), 0.5);
     std::vector<double> off;
     for (const double error : part) off.push_back(std::abs(error - middle));
     const double sigma_px = 1.4826 * quantile(off, 0.5), points = static_cast<double>(part.size()) / evidence.pairs;
-    sum += middle * middle - kMedianVariance * sigma_px * sigma_px / std::max(1.0, points);
-    ++count;
+    squares.push_back(middle * middle - kMedianVariance * sigma_px * sigma_px / std::max(1.0, points));
   }
-  return count > 0 ? std::sqrt(std::max(0.0, sum) / count) : 0;
+  if (squares.empty()) return 0;
+  if (squares.size() >= kFewestParts) squares.erase(std::max_element(squares.begin(), squares.end()));
+  double sum = 0;
+  for (const double square : squares) sum += square;
+  return std::sqrt(std::max(0.0, sum) / static_cast<double>(squares.size()));
 }
 
 /// x_left - x_right of the matches in the common view of a rig, from the nearest to infinity to the nearest to the cameras.

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "calib/rectification.h"
+#include "calib/rig_formats.h"
 #include "duoptic/rig_health.h"
 
 namespace duo {
@@ -24,6 +25,27 @@ class Doubts {
   std::vector<RigDoubt> list_;
 };
 
+constexpr double kMostOffCentre = 0.15;  // of a webcam's principal point, in parts of the width or height
+
+bool is_off_centre(const Camera& c) {
+  return std::abs(c.cx_px - (c.size.width - 1) / 2.0) > kMostOffCentre * c.size.width ||
+         std::abs(c.cy_px - (c.size.height - 1) / 2.0) > kMostOffCentre * c.size.height;
+}
+
+/// Camera matrices of pictures of another size, which were scaled since or taken at another setting: rows still agree where
+/// the lenses bend little, and every depth is wrong.
+bool doubt_size(const Rig& rig, Doubts& doubts) {
+  if (!is_off_centre(rig.left) || !is_off_centre(rig.right)) return false;
+  const std::vector<Size> likely = likely_sizes({rig.left.cx_px, rig.left.cy_px}, {rig.right.cx_px, rig.right.cy_px});
+  if (likely.empty()) return false;
+  const auto [w, h] = rig.left.size;
+  doubts.add(RigVerdict::kRecalibrate,
+             "its camera matrices are of pictures of another size: both principal points lie in the middle of about {}x{}, "
+             "not of {}x{}; calibrate at {}x{}, or give the pictures and the size that they were calibrated at",
+             likely[0].width, likely[0].height, w, h, w, h);
+  return true;
+}
+
 /// Pixels of the border that no ray reaches, as a share of all.
 double blind_share(const Lens& lens) {
   const auto [w, h] = lens.camera().size;
@@ -37,7 +59,8 @@ double blind_share(const Lens& lens) {
   return static_cast<double>(blind) / all;
 }
 
-void doubt_camera(const Camera& c, const char* side, Doubts& doubts) {
+/// `size_fits`: the camera matrix is of pictures of this size.
+void doubt_camera(const Camera& c, const char* side, bool size_fits, Doubts& doubts) {
   const auto [w, h] = c.size;
   const double across_deg = 2 * std::atan(w / (2 * c.fx_px)) * kDeg;
   if (across_deg < 25 || across_deg > 120)
@@ -47,10 +70,9 @@ void doubt_camera(const Camera& c, const char* side, Doubts& doubts) {
   if (const double ratio = c.fx_px / c.fy_px; ratio > 1.05 || ratio < 0.95)
     doubts.add(RigVerdict::kCanBeImproved, "the {} pixels would not be square (fx {:.1f}, fy {:.1f} px)", side, c.fx_px,
                c.fy_px);
-  const double off_x = c.cx_px - (w - 1) / 2.0, off_y = c.cy_px - (h - 1) / 2.0;
-  if (std::abs(off_x) > 0.15 * w || std::abs(off_y) > 0.15 * h)
+  if (size_fits && is_off_centre(c))
     doubts.add(RigVerdict::kCanBeImproved, "the {} principal point is {:.0f}, {:.0f} px off the middle of the picture", side,
-               off_x, off_y);
+               c.cx_px - (w - 1) / 2.0, c.cy_px - (h - 1) / 2.0);
   if (const double blind = blind_share(Lens(c)); blind > 0)
     doubts.add(
         RigVerdict::kRecalibrate,
@@ -101,8 +123,9 @@ const char* name_of(RigVerdict verdict) {
 
 std::vector<RigDoubt> rig_doubts(const Rig& rig) {
   Doubts doubts;
-  doubt_camera(rig.left, "left", doubts);
-  doubt_camera(rig.right, "right", doubts);
+  const bool size_fits = !doubt_size(rig, doubts);
+  doubt_camera(rig.left, "left", size_fits, doubts);
+  doubt_camera(rig.right, "right", size_fits, doubts);
   if (const double ratio = rig.left.fx_px / rig.right.fx_px; ratio > 1.1 || ratio < 1 / 1.1)
     doubts.add(RigVerdict::kCanBeImproved, "the focal lengths differ ({:.1f} and {:.1f} px); use two cameras of one kind",
                rig.left.fx_px, rig.right.fx_px);

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "calib/judge_scene.h"
+#include "calib/rig_fitting.h"
+#include "calib/row_offsets.h"
 #include "calib/scene_pose.h"
 
 namespace duo {
@@ -44,6 +46,18 @@ Image<Rgb8> half_turn(const Image<Rgb8>& picture) {
 Image<Rgb8> mirror(const Image<Rgb8>& picture) {
   return moved_pixels(picture, [w = picture.width()](int x, int y) { return std::pair(w - 1 - x, y); });
 }
+Image<Rgb8> rows_in_reverse(const Image<Rgb8>& picture) {
+  return moved_pixels(picture, [h = picture.height()](int x, int y) { return std::pair(x, h - 1 - y); });
+}
+Image<Rgb8> negative(const Image<Rgb8>& picture) {
+  Image<Rgb8> out(picture.size());
+  for (int y = 0; y < out.height(); ++y)
+    std::transform(picture.row(y), picture.row(y) + out.width(), out.row(y), [](Rgb8 p) {
+      const auto other = [](std::uint8_t value) { return static_cast<std::uint8_t>(255 - value); };
+      return Rgb8{other(p.r), other(p.g), other(p.b)};
+    });
+  return out;
+}
 /// Of the square in the middle; black beside it.
 Image<Rgb8> quarter_turn(const Image<Rgb8>& picture) {
   const auto [w, h] = picture.size();
@@ -59,31 +73,49 @@ constexpr char kOnSide[] = "one picture lies on its side: turn that camera by 90
 constexpr Posture kPostures[] = {
     {"one picture stands on its head: turn that camera by 180 degrees, or its picture", half_turn},
     {"one picture is mirrored and the other is not: switch the mirroring of that camera off", mirror},
+    {"one picture has its rows from bottom to top: switch that camera's flip off, or turn its picture over", rows_in_reverse},
+    {"one picture is a negative of the other: switch the inverting of that camera off, or invert its picture", negative},
     {kOnSide, quarter_turn},
     {kOnSide, three_quarter_turn}};
 
-std::size_t agreeing(const Rig& lenses, const SceneMatches& scene) {
-  const auto matches = agreeing_matches(lenses, scene);
-  return matches ? matches->size() : 0;
-}
-
-/// Why views with many points do not agree; empty: it is not known.
-std::string why_apart(const Rig& lenses, const SceneMatches& scene, const Pair& pair, int threads) {
-  constexpr int kManyPoints = 150;  // in either picture: a scene with texture, in light
-  constexpr double kByChance =
-      0.025;  // share of points that match in pictures of two places: up to 0.014; of one: from 0.05 on
-  if (scene.fewest_points < kManyPoints) return {};
+/// Why views do not agree; empty: it is not known.
+std::string why_apart(const SceneMatches& scene, const Pair& pair, int threads) {
+  constexpr int kManyPoints = 100;                // in either picture: a scene with texture, in light
+  constexpr double kByChance = 0.025,             // share of points that match in pictures of two places: up to 0.014
+      kOfOneScene = 0.06;                         // and of one: from 0.09 on, in a bare hall
+  constexpr std::size_t kFewest = 8, kTimes = 4;  // matches of a picture whose posture is undone, and how many more than before
+  const std::size_t alike = scene.matches.size() / static_cast<std::size_t>(scene.pairs);
+  const double points = scene.fewest_points;
+  if (points < kFewest || static_cast<double>(alike) > kOfOneScene * points) return {};
   Pair other{{pair.left.pixels.clone()}, {}};
   for (const Posture& posture : kPostures) {
     other.right.pixels = posture.undone(pair.right.pixels);
-    if (agreeing(lenses, match_pair(other, threads)) > 0) return posture.what;
+    const std::size_t undone = match_pair(other, threads).matches.size();
+    if (undone >= kFewest && undone > kTimes * alike && static_cast<double>(undone) > kOfOneScene * points) return posture.what;
   }
-  const double alike = static_cast<double>(scene.matches.size()) / scene.pairs;
-  if (alike > kByChance * scene.fewest_points) return {};
+  if (points < kManyPoints || static_cast<double>(alike) > kByChance * points) return {};
   return fmt::format(
-      "left and right have nothing in common: of {} points in a picture {:.0f} look alike; give pictures of one scene at one "
+      "left and right have nothing in common: of {} points in a picture {} look alike; give pictures of one scene at one "
       "moment, of cameras that look the same way",
       scene.fewest_points, alike);
+}
+
+/// Of a pair that is taken as rectified: how its rows differ, where most points lie further apart than what is put right.
+std::string why_rows_differ(const std::vector<SceneMatch>& matches, int height) {
+  constexpr double kMost = 0.4;  // of the points, in one band
+  std::vector<double> rows_px;
+  for (const SceneMatch& m : matches) rows_px.push_back(m.right_px.y - m.left_px.y);
+  std::sort(rows_px.begin(), rows_px.end());
+  std::size_t most = 0;
+  for (auto from = rows_px.begin(); from != rows_px.end(); ++from) {
+    const auto to = std::upper_bound(from, rows_px.end(), *from + 2 * row_reach_px(height));
+    most = std::max(most, static_cast<std::size_t>(to - from));
+  }
+  if (static_cast<double>(most) > kMost * static_cast<double>(rows_px.size())) return {};
+  return fmt::format(
+      "the rows of both pictures do not fit: the same points lie {:.0f} to {:.0f} px lower in the right one, as no rectified "
+      "pair has them: give a rig; or one picture was zoomed, cropped or scaled",
+      rows_px[rows_px.size() / 20], rows_px[rows_px.size() - 1 - rows_px.size() / 20]);
 }
 
 /// Of a pair that is taken as rectified: where its points would lie.
@@ -157,38 +189,74 @@ bool surely_good(const std::optional<Rig>& rig, const RigFit& fit) {
   return fit.scene->row_px < kSurelyRight_px && most_rad < kLeastPan_rad;
 }
 
-/// What points say; none: too few agree.
-std::optional<RigFit> fit_by(const std::optional<Rig>& rig, const Rig& lenses, const SceneMatches& scene,
-                             const RigFit& untold) {
-  if (one_picture(scene.matches)) return misfit("left and right are the same picture; give one of each camera");
-  const auto matches = agreeing_matches(lenses, scene);
-  if (!matches) return {};
-  if (!rig) {
-    std::string why = why_not_rectified(*matches);
-    return why.empty() ? untold : misfit(std::move(why));
-  }
-  const auto evidence = evidence_of(scene, *matches);
-  return evidence ? judged(*rig, *evidence) : untold;
+/// Whether what was seen says that something is wrong, by so much that no more need be looked at.
+bool surely_wrong(const RigFit& fit) {
+  constexpr double kSurelyCovered = 0.25, kSurelyPan_sigmas = 5;
+  if (fit.what.empty() || fit.verdict != RigVerdict::kRecalibrate) return false;
+  if (!fit.scene) return true;  // swapped, mirrored, one picture twice
+  const bool rows = fit.scene->row_px >= 2 * kUselessRow_px && fit.scene->covered >= kSurelyCovered;
+  return rows || fit.scene->pan_px >= kSurelyPan_sigmas * fit.scene->pan_sigma_px;
+}
+
+/// What is said where the pairs tell nothing.
+RigFit untold(const std::optional<Rig>& rig) { return rig && !rig->metric ? not_metric({}) : RigFit(); }
+
+/// What needs no picture: numbers that are of no use. Pictures of another size are the engine's to refuse.
+std::optional<RigFit> fit_by_numbers(const std::optional<Rig>& rig, Size size) {
+  if (!rig) return {};
+  for (const RigDoubt& doubt : rig_doubts(*rig))
+    if (doubt.verdict == RigVerdict::kRecalibrate) return misfit(fmt::format("the rig is of no use: {}", doubt.what));
+  return rig->left.size == size ? std::nullopt : std::optional(untold(rig));
 }
 
 }  // namespace
 
+RigFitting::RigFitting(std::optional<Rig> rig, Size size, int threads)
+    : rig_(std::move(rig)), lenses_(rig_ ? *rig_ : guessed_rig(size)), size_(size), threads_(threads) {}
+
+void RigFitting::add(const std::shared_ptr<const Pair>& pair) {
+  if (!matcher_) matcher_.emplace(size_, threads_);
+  matcher_->add(*pair);
+  last_ = pair;
+}
+
+/// None: too few points agree, or all in one corner.
+std::optional<RigFit> RigFitting::by_matches(const SceneMatches& scene) const {
+  if (one_picture(scene.matches)) return misfit("left and right are the same picture; give one of each camera");
+  const auto matches = agreeing_matches(lenses_, scene);
+  if (!matches) return {};
+  if (!rig_) {
+    std::string why = why_not_rectified(*matches);
+    if (why.empty()) why = why_rows_differ(*matches, size_.height);
+    return why.empty() ? RigFit() : misfit(std::move(why));
+  }
+  const auto evidence = evidence_of(scene, *matches);
+  return evidence ? judged(*rig_, *evidence) : untold(rig_);
+}
+
+std::optional<RigFit> RigFitting::by_first(const std::shared_ptr<const Pair>& pair) {
+  if (auto known = fit_by_numbers(rig_, size_)) return known;
+  const auto sure = [&](const std::optional<RigFit>& fit) { return fit && (surely_good(rig_, *fit) || surely_wrong(*fit)); };
+  if (auto fit = by_matches(match_pair(*pair, threads_, SceneSearch::kQuick)); sure(fit)) return fit;
+  add(pair);
+  auto fit = by_matches(matcher_->matches());
+  return sure(fit) ? fit : std::nullopt;
+}
+
+RigFit RigFitting::by_all(std::span<const std::shared_ptr<const Pair>> others) {
+  for (const auto& pair : others) add(pair);
+  if (!matcher_) return untold(rig_);
+  const SceneMatches scene = matcher_->matches();
+  if (auto fit = by_matches(scene)) return *fit;
+  std::string why = why_apart(scene, *last_, threads_);
+  return why.empty() ? untold(rig_) : misfit(std::move(why));
+}
+
 RigFit rig_fit(const std::optional<Rig>& rig, std::span<const std::shared_ptr<const Pair>> pairs, int threads) {
   if (pairs.empty()) return {};
-  if (rig)
-    for (const RigDoubt& doubt : rig_doubts(*rig))
-      if (doubt.verdict == RigVerdict::kRecalibrate) return misfit(fmt::format("the rig is of no use: {}", doubt.what));
-  const RigFit untold = rig && !rig->metric ? not_metric({}) : RigFit();
-  const Size size = pairs[0]->left.pixels.size();
-  const Rig lenses = rig ? *rig : guessed_rig(size);
-  if (!(lenses.left.size == size)) return untold;  // the engine refuses it
-  const auto quick = fit_by(rig, lenses, match_pair(*pairs[0], threads, SceneSearch::kQuick), untold);
-  if (quick && surely_good(rig, *quick)) return *quick;
-  SceneMatcher matcher(size, threads);
-  for (const auto& pair : pairs) matcher.add(*pair);
-  if (auto fit = fit_by(rig, lenses, matcher.matches(), untold)) return *fit;
-  std::string why = why_apart(lenses, matcher.matches(), *pairs.back(), threads);
-  return why.empty() ? untold : misfit(std::move(why));
+  RigFitting fitting(rig, pairs[0]->left.pixels.size(), threads);
+  const auto fit = fitting.by_first(pairs[0]);
+  return fit ? *fit : fitting.by_all(pairs.subspan(1));
 }
 
 }  // namespace duo

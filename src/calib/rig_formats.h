@@ -53,6 +53,7 @@ Result<OpencvNumbers> opencv_numbers(std::string_view text, const std::string& n
 /// `size`: of the calibrated pictures, for files that do not say it; empty: not known.
 Result<Rig> rig_from_opencv(const OpencvNumbers& numbers, const std::string& name, Size size = {});
 /// The usual sizes of pictures in whose middle both principal points lie.
+std::vector<Size> likely_sizes(Vec2 left_centre_px, Vec2 right_centre_px);
 std::vector<Size> likely_sizes(const OpencvNumbers& numbers);
 
 /// Takes over up to eight coefficients in OpenCV's order; what is wrong with them, empty when nothing is. OpenCV writes 12 or

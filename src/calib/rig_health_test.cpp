@@ -177,6 +177,14 @@ TEST(RigDoubts, NamesWhatNoWebcamHas) {
   expect_doubt([](Rig& r) { r.left.fx_px = r.left.fy_px = 3000; }, RigVerdict::kCanBeImproved, "field of view");
   expect_doubt([](Rig& r) { r.right.fy_px *= 1.2; }, RigVerdict::kCanBeImproved, "right pixels would not be square");
   expect_doubt([](Rig& r) { r.right.cx_px += 150; }, RigVerdict::kCanBeImproved, "right principal point is 1");
+  const auto scaled = [](double x, double y) {
+    return [x, y](Rig& r) {
+      for (Camera* c : {&r.left, &r.right}) c->fx_px *= x, c->cx_px *= x, c->fy_px *= y, c->cy_px *= y;
+    };
+  };
+  expect_doubt(scaled(2, 2), RigVerdict::kRecalibrate, "in the middle of about 1280x960, not of 640x480");
+  expect_doubt(scaled(0.5, 0.5), RigVerdict::kRecalibrate, "in the middle of about 320x240, not of 640x480");
+  expect_doubt(scaled(2, 1.5), RigVerdict::kRecalibrate, "in the middle of about 1280x720, not of 640x480");
   expect_doubt([](Rig& r) { r.right.fx_px *= 1.2, r.right.fy_px *= 1.2; }, RigVerdict::kCanBeImproved, "focal lengths differ");
   expect_doubt([](Rig& r) { r.right_from_left.rotation = turn(0, 180, 0); }, RigVerdict::kRecalibrate, "mirrored");
   expect_doubt([](Rig& r) { r.right_from_left.rotation = turn(180, 0, 0); }, RigVerdict::kRecalibrate, "mirrored");

@@ -238,25 +238,28 @@ Result<Rig> rig_from_opencv(const OpencvNumbers& numbers, const std::string& nam
   return rig;
 }
 
-std::vector<Size> likely_sizes(const OpencvNumbers& numbers) {
+std::vector<Size> likely_sizes(Vec2 left_centre_px, Vec2 right_centre_px) {
   // How far a webcam's principal point lies from the middle of its picture at most, in parts of the width or height.
   constexpr double kOffCentre = 0.07;
   constexpr Size kSizes[] = {{320, 240},   {424, 240},   {640, 360},   {640, 400},   {640, 480},   {752, 480},   {800, 600},
                              {848, 480},   {960, 540},   {1024, 768},  {1280, 720},  {1280, 800},  {1280, 960},  {1280, 1024},
                              {1600, 1200}, {1920, 1080}, {1920, 1200}, {2304, 1296}, {2560, 1440}, {2592, 1944}, {3840, 2160}};
+  const auto in_middle = [](Vec2 centre_px, Size size) {
+    return std::abs(centre_px.x / size.width - 0.5) < kOffCentre && std::abs(centre_px.y / size.height - 0.5) < kOffCentre;
+  };
   std::vector<Size> likely;
-  for (const Size size : kSizes) {
-    int fitting = 0;
-    for (const Spelling& s : kSpellings)
-      for (const char* key : {s.left_matrix, s.right_matrix}) {
-        const auto found = numbers.find(key);
-        if (found == numbers.end() || found->second.size() != 9) continue;
-        fitting += std::abs(found->second[2] / size.width - 0.5) < kOffCentre &&
-                   std::abs(found->second[5] / size.height - 0.5) < kOffCentre;
-      }
-    if (fitting == 2) likely.push_back(size);
-  }
+  for (const Size size : kSizes)
+    if (in_middle(left_centre_px, size) && in_middle(right_centre_px, size)) likely.push_back(size);
   return likely;
+}
+
+std::vector<Size> likely_sizes(const OpencvNumbers& numbers) {
+  std::vector<Vec2> centres_px;
+  for (const Spelling& s : kSpellings)
+    for (const char* key : {s.left_matrix, s.right_matrix})
+      if (const auto found = numbers.find(key); found != numbers.end() && found->second.size() == 9)
+        centres_px.push_back({found->second[2], found->second[5]});
+  return centres_px.size() == 2 ? likely_sizes(centres_px[0], centres_px[1]) : std::vector<Size>();
 }
 
 }  // namespace duo

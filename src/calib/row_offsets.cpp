@@ -121,13 +121,15 @@ bool RowOffsets::matter() const {
   return points >= static_cast<int>(kLeastPoints) && before_px >= kWorthIt_px && after_px < 0.75 * before_px;
 }
 
+double row_reach_px(int height) { return std::max(3.0, 0.01 * height); }
+
 RowOffsets fit_row_offsets(const SceneMatches& scene) {
   RowOffsets out;
   out.size = scene.size;
   std::vector<RowDifference> all;
   for (const SceneMatch& match : scene.matches)
     all.push_back({terms_at(match.right_px.x, match.left_px.y, scene.size), match.right_px.y - match.left_px.y});
-  all = densest(std::move(all), std::max(3.0, 0.01 * scene.size.height));
+  all = densest(std::move(all), row_reach_px(scene.size.height));
   if (all.size() < kLeastPoints) return out;
   const Terms fit = fit_terms(all, scene.size.width);
   const auto off = off_px(all, fit);

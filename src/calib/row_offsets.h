@@ -8,6 +8,8 @@
 namespace duo {
 
 RowOffsets fit_row_offsets(const SceneMatches& scene);
+/// Rows of points that differ by no more than this from those of the most are put right; others are taken for wrong matches.
+double row_reach_px(int height);
 
 /// Maps that leave the left picture where it is and take the offsets off the right one; no geometry. Rows up to one pixel
 /// beyond the right picture are its last ones.

@@ -30,6 +30,11 @@ constexpr int kColumns = 8, kRows = 6;  // cells of the picture
 constexpr int kMostOfACell = 400;       // over all pairs
 constexpr int kFewOfACell = 8;          // of one pair, in a quick search
 constexpr int kQuickWidth = 480;        // of its pictures at most, px
+constexpr int kSmallWidth = 240;        // pictures of fewer columns are doubled: they have too few points
+
+cv::Mat cv_view(Image<std::uint8_t>& image) {
+  return {image.height(), image.width(), CV_8U, image.row(0), static_cast<std::size_t>(image.stride())};
+}
 
 /// Keeps the best of each cell of the picture, so that they lie all over it.
 void keep_best(std::vector<SceneCandidate>& candidates, Size size, int most_of_a_cell) {
@@ -47,41 +52,47 @@ struct SceneMatcher::State {
   State(Size size, int threads, SceneSearch search)
       : pool(threads),
         quick(search == SceneSearch::kQuick),
-        gray(size),
-        smooth_left(size),
-        smooth_right(size),
-        scratch(size, kPoints),
+        doubled(size.width < kSmallWidth),
+        gray(doubled ? Size{2 * size.width, 2 * size.height} : size),
+        smooth_left(gray.size()),
+        smooth_right(gray.size()),
+        scratch(gray.size(), kPoints),
         left(kPoints),
         right(kPoints),
         found(kPoints) {
     scene.size = size;
+    if (doubled) small = Image<std::uint8_t>(size);
     if (!quick) return;
     for (Size half = size; half.width > kQuickWidth; ++halvings) coarse.emplace_back(half = half_of(half));
   }
 
   void find(const Picture& picture, SiftPoints& out, Image<float>& smooth) {
-    simd::gray(pool, picture.pixels, gray);
+    simd::gray(pool, picture.pixels, doubled ? small : gray);
+    if (doubled) cv::resize(cv_view(small), cv_view(gray), {gray.width(), gray.height()}, 0, 0, cv::INTER_LINEAR);
     for (int i = 0; i < halvings; ++i) simd::halve(pool, i == 0 ? gray : coarse[i - 1], coarse[i]);
     const Image<std::uint8_t>& searched = halvings > 0 ? coarse.back() : gray;
     simd::sift(pool, searched, Window::all(searched.size()), {.contrast = 0.02f}, scratch, out);
-    const cv::Mat from(gray.height(), gray.width(), CV_8U, gray.row(0), static_cast<std::size_t>(gray.stride()));
     cv::Mat to(smooth.height(), smooth.width(), CV_32F, smooth.row(0),
                sizeof(float) * static_cast<std::size_t>(smooth.stride()));
-    from.convertTo(to, CV_32F);
+    cv_view(gray).convertTo(to, CV_32F);
     cv::GaussianBlur(to, to, {}, kSmooth_px);
   }
-  /// In the whole picture: the centre of a coarse pixel lies between those of its four.
+  /// In the gray picture: the centre of a coarse pixel lies between those of its four.
   Vec2 place_of(const SiftPoint& point) const {
     const double factor = 1 << halvings, shift = (factor - 1) / 2;
     return {factor * point.x_px + shift, factor * point.y_px + shift};
   }
 
+  /// In the picture that was given.
+  Vec2 given_place_of(Vec2 in_gray) const { return doubled ? Vec2{(in_gray.x - 0.5) / 2, (in_gray.y - 0.5) / 2} : in_gray; }
+
   Pool pool;
-  const bool quick;
-  Image<std::uint8_t> gray;
+  const bool quick, doubled;
+  Image<std::uint8_t> gray, small;          // small: before it is doubled
   std::vector<Image<std::uint8_t>> coarse;  // each half of the one before
   int halvings = 0;
   Image<float> smooth_left, smooth_right;
+  Image<SlopedPixel> sloped_right;
   SiftScratch scratch;
   SiftPoints left, right;
   std::vector<PointMatch> found;
@@ -97,6 +108,7 @@ void SceneMatcher::add(const Pair& pair) {
   State& s = *state_;
   s.find(pair.left, s.left, s.smooth_left);
   s.find(pair.right, s.right, s.smooth_right);
+  put_slopes(s.smooth_right, s.sloped_right);
   s.found.resize(static_cast<std::size_t>(s.left.count));
   simd::match_points(s.pool, s.left, {}, s.right, {.ratio_percent = 75}, s.found);
   std::vector<SceneCandidate> candidates;
@@ -105,10 +117,10 @@ void SceneMatcher::add(const Pair& pair) {
     if (found.seen != PointMatch::kNone)
       candidates.push_back({{s.place_of(s.left[i]), s.place_of(s.right[found.seen])}, found.square_distance});
   }
-  if (s.quick) keep_best(candidates, s.scene.size, kFewOfACell);
+  if (s.quick) keep_best(candidates, s.gray.size(), kFewOfACell);
   for (SceneCandidate& c : candidates)
-    if (const auto there = align_match(s.smooth_left, c.match.left_px, s.smooth_right, c.match.right_px, kRadius_px)) {
-      c.match.right_px = *there;
+    if (const auto there = align_match(s.smooth_left, c.match.left_px, s.sloped_right, c.match.right_px, kRadius_px)) {
+      c.match = {s.given_place_of(c.match.left_px), s.given_place_of(*there)};
       s.all.push_back(c);
     }
   const int points = std::min(s.left.count, s.right.count);

@@ -9,6 +9,7 @@
 #include "core/check.h"
 #include "core/clock.h"
 #include "pipeline/frame_stream.h"
+#include "pipeline/repeat_watch.h"
 #include "pipeline/rig_watch.h"
 #include "pipeline/tap.h"
 #include "sources/file_source.h"
@@ -36,6 +37,7 @@ struct Pipeline::State {
   std::shared_ptr<const Pair> pair;  // last.pair
   std::vector<Person> people;
   double tracker_ms = 0;
+  RepeatWatch repeats;
   RigWatch watch;
   bool rig_news = false, rig_news_before = false;  // of pairs that were passed over
   std::int64_t passed = 0;                         // frames of sources before this one
@@ -211,7 +213,10 @@ Result<Next> Pipeline::next() {
   State& s = *state_;
   DUO_TRY(s.start());
   DUO_TRY_ASSIGN(const Next next, s.frames->next(s.last));
-  if (next == Next::kNew) s.pair = s.last.pair;
+  if (next == Next::kNew) {
+    s.pair = s.last.pair;
+    s.repeats.see(*s.pair);
+  }
   DUO_TRY(s.look_at_rig(next));
   if (next != Next::kNew) return next;
   if (s.tracker == nullptr) return next;
@@ -346,6 +351,7 @@ void Pipeline::close_source() {
   s.frames.reset();
   s.waiting.reset();
   s.pair.reset();
+  s.repeats = {};
   s.last = {};
   s.people.clear();
 }
@@ -372,6 +378,9 @@ std::int64_t Pipeline::read() const { return state_->frames ? state_->frames->re
 std::int64_t Pipeline::dropped() const {
   return state_->source().dropped() + (state_->frames ? state_->frames->left_out() : 0);
 }
-std::string Pipeline::warning() const { return state_->source().warning(); }
+std::string Pipeline::warning() const {
+  const std::string of_source = state_->source().warning(), repeats = state_->repeats.warning(live());
+  return of_source + (of_source.empty() || repeats.empty() ? "" : "; ") + repeats;
+}
 
 }  // namespace duo

@@ -7,35 +7,47 @@
 namespace duo {
 namespace {
 
-constexpr std::size_t kWatchedPairs = 3;
-constexpr TimeNs kBetween_ns = 300'000'000, kKnown_ns = 900'000'000, kAgain_ns = 60'000'000'000;
+constexpr int kWatchedPairs = 3;
+constexpr TimeNs kBetween_ns = 300'000'000, kFirstKnown_ns = 100'000'000, kKnown_ns = 900'000'000, kAgain_ns = 60'000'000'000;
 
 }  // namespace
 
 bool RigWatch::see(const std::shared_ptr<const Pair>& pair, bool last) {
   if (!on_) return false;
-  if (pairs_.empty() && !started_) start_ns_ = pair->left.t_ns;
-  const TimeNs since_ns = pair->left.t_ns - start_ns_;
-  if (!started_) {
-    if (since_ns >= static_cast<TimeNs>(pairs_.size()) * kBetween_ns) pairs_.push_back(pair);
-    if (pairs_.size() == kWatchedPairs || since_ns >= kKnown_ns || last) start();
+  if (!std::exchange(begun_, true)) {
+    start_ns_ = pair->left.t_ns;
+    looked_at_ = 1;
+    fitting_ = std::make_shared<RigFitting>(rig_, pair->left.pixels.size(), 1);
+    start(Step::kFirst, [fitting = fitting_, pair] { return fitting->by_first(pair); });
   }
-  if (last || (!live_ && since_ns >= kKnown_ns)) return take();
-  if (!live_) return false;
-  if (since_ns >= kAgain_ns && !waiting_) started_ = false;
-  return waiting_ && (!worker_.started() || worker_.ends_within(std::chrono::nanoseconds(0))) && take();
+  const TimeNs since_ns = pair->left.t_ns - start_ns_;
+  const bool gathers = step_ == Step::kFirst || step_ == Step::kGather;
+  if (gathers && looked_at_ < kWatchedPairs && since_ns >= looked_at_ * kBetween_ns) {
+    others_.push_back(pair);
+    ++looked_at_;
+  }
+  if (step_ == Step::kFirst && (last || is_known(since_ns, kFirstKnown_ns)) && take()) return true;
+  if (step_ == Step::kGather && (last || looked_at_ == kWatchedPairs || since_ns >= kKnown_ns)) start_all();
+  if (step_ == Step::kAll && (last || is_known(since_ns, kKnown_ns))) return take();
+  if (live_ && step_ == Step::kDone && since_ns >= kAgain_ns) begun_ = false;
+  return false;
 }
 
 bool RigWatch::end() {
-  if (!started_ && !pairs_.empty()) start();
-  return take();
+  if (step_ == Step::kFirst && take()) return true;
+  if (step_ == Step::kGather) start_all();
+  return step_ == Step::kAll && take();
 }
 
-void RigWatch::start() {
-  started_ = waiting_ = true;
-  found_ = std::make_shared<RigFit>();
-  const auto work = [found = found_, rig = rig_, pairs = std::exchange(pairs_, {})](const std::stop_token&) -> Result<void> {
-    *found = rig_fit(rig, pairs, 1);
+void RigWatch::start_all() {
+  start(Step::kAll, [fitting = fitting_, others = std::move(others_)] { return std::optional(fitting->by_all(others)); });
+}
+
+void RigWatch::start(Step step, std::function<std::optional<RigFit>()> judge) {
+  step_ = step;
+  found_ = std::make_shared<std::optional<RigFit>>();
+  const auto work = [found = found_, judge = std::move(judge)](const std::stop_token&) -> Result<void> {
+    *found = judge();
     return {};
   };
   const std::string what = "see whether the rig fits";
@@ -45,11 +57,22 @@ void RigWatch::start() {
     static_cast<void>(without_exceptions(what, [&] { return work({}); }));
 }
 
+/// Whether what the worker found counts from now on.
+bool RigWatch::is_known(TimeNs since_ns, TimeNs of_files_ns) {
+  return live_ ? !worker_.started() || worker_.ends_within(std::chrono::nanoseconds(0)) : since_ns >= of_files_ns;
+}
+
+/// What the worker found. Whether it is news.
 bool RigWatch::take() {
-  if (!std::exchange(waiting_, false)) return false;
-  if (worker_.started() && !std::exchange(worker_, {}).join()) *found_ = {};
-  const bool news = !fit_ || fit_->verdict != found_->verdict;
-  fit_ = std::move(*found_);
+  const bool by_first = step_ == Step::kFirst;
+  if (worker_.started() && !std::exchange(worker_, {}).join()) found_->reset();
+  step_ = by_first && !*found_ ? Step::kGather : Step::kDone;
+  if (step_ == Step::kGather) return false;
+  others_.clear();
+  fitting_.reset();
+  const RigFit found = found_->value_or(RigFit());
+  const bool news = !fit_ || fit_->verdict != found.verdict;
+  fit_ = found;
   return news;
 }
 

@@ -18,9 +18,9 @@ const SyntheticPair& watched_room() {
   static const SyntheticPair room = render_synthetic({.size = {480, 360}}, 2);
   return room;
 }
-/// Of before the right camera rolled by a degree.
-Rig rolled_rig() {
-  const double c = std::cos(M_PI / 180), s = std::sin(M_PI / 180);
+/// Of before the right camera rolled.
+Rig rolled_rig(double degrees = 1) {
+  const double c = std::cos(degrees * M_PI / 180), s = std::sin(degrees * M_PI / 180);
   Rig rig = watched_room().rig;
   rig.right_from_left = Rigid3{Mat3{{c, -s, 0, s, c, 0, 0, 0, 1}}, {}} * rig.right_from_left;
   return rig;
@@ -76,11 +76,14 @@ int news_at(Pipeline& pipeline) {
 TEST(RigWatch, OfFilesItIsToldWithTheSamePairInEveryRun) {
   for (int run = 0; run < 2; ++run) {
     Pipeline longer = watching(std::make_unique<TenASecond>(15, rolled_rig()), RigCheck::kTell);
-    EXPECT_EQ(news_at(longer), 9);  // 0.9 s after the first
+    EXPECT_EQ(news_at(longer), 1);  // 0.1 s after the first, which is enough
     EXPECT_EQ(longer.rig_fit()->verdict, RigVerdict::kRecalibrate);
     EXPECT_GT(longer.rig_fit()->disparity_sigma_px, 0.5);
+    Pipeline doubtful = watching(std::make_unique<TenASecond>(15, rolled_rig(0.35)), RigCheck::kTell);
+    EXPECT_EQ(news_at(doubtful), 9);  // 0.9 s after the first, by three
+    EXPECT_NE(doubtful.rig_fit()->verdict, RigVerdict::kGood);
   }
-  Pipeline shorter = watching(std::make_unique<TenASecond>(4, rolled_rig()), RigCheck::kTell);
+  Pipeline shorter = watching(std::make_unique<TenASecond>(4, rolled_rig(0.35)), RigCheck::kTell);
   EXPECT_EQ(news_at(shorter), 4);  // its end
   Pipeline still = watching(std::make_unique<TenASecond>(1, rolled_rig()), RigCheck::kTell);
   EXPECT_EQ(news_at(still), 0);

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <functional>
+#include <set>
 
 namespace duo {
 
@@ -25,13 +27,19 @@ std::uint32_t number_at(std::string_view bytes, std::size_t at, std::size_t size
   return value;
 }
 
-/// The first directory of a TIFF, EXIF and MPO block: each is one.
+/// A directory, at first the first one, of a TIFF, EXIF and MPO block: each is one.
 class TiffTags {
  public:
   explicit TiffTags(std::string_view block) : block_(block), little_(block.starts_with("II")) {
-    if (!little_ && !block.starts_with("MM")) return;
-    directory_ = number(4, 4);
-    entries_ = std::min<std::size_t>(number(directory_, 2), 4096);
+    if (little_ || block.starts_with("MM")) enter(number(4, 4));
+  }
+  std::size_t directory() const { return directory_; }
+  /// The next directory; false where there is none, as of a block that is not whole.
+  bool next() {
+    const std::size_t at = directory_ + 2 + 12 * entries_;
+    if (directory_ == 0 || at + 4 > block_.size()) return false;
+    enter(number(at, 4));
+    return directory_ != 0 && directory_ + 2 < block_.size();
   }
   /// The first value of a tag of whole numbers, or an offset to its values.
   std::optional<std::uint32_t> of(std::uint32_t tag) const {
@@ -49,6 +57,11 @@ class TiffTags {
   std::uint32_t number(std::size_t at, std::size_t size) const { return number_at(block_, at, size, little_); }
 
  private:
+  void enter(std::size_t directory) {
+    directory_ = directory;
+    entries_ = std::min<std::size_t>(number(directory_, 2), 4096);
+  }
+
   std::string_view block_;
   bool little_;
   std::size_t directory_ = 0, entries_ = 0;
@@ -186,6 +199,56 @@ std::vector<std::string_view> views_of_mpo(std::string_view bytes) {
   if (out.size() < 2) return {};
   out.resize(2);
   return out;
+}
+
+namespace {
+
+int pages_of_tiff(std::string_view bytes) {
+  constexpr std::uint32_t kKind = 254, kSmallerCopy = 1, kMask = 4;
+  constexpr std::size_t kMost = 10000;
+  TiffTags tags(bytes);
+  std::set<std::size_t> seen;  // directories, which could lead to each other in a circle
+  int pages = 0;
+  for (bool more = true; more && seen.size() < kMost && seen.insert(tags.directory()).second; more = tags.next())
+    pages += (tags.of(kKind).value_or(0) & (kSmallerCopy | kMask)) == 0;
+  return std::max(1, pages);
+}
+
+/// acTL, which says it, stands before the first pixels.
+int pictures_of_png(std::string_view bytes) {
+  const std::size_t pixels = bytes.find("IDAT"sv), said = bytes.substr(0, pixels).find("acTL"sv);
+  return said == kNowhere ? 1 : static_cast<int>(std::clamp(number_at(bytes, said + 4, 4, false), 1u, 1u << 20));
+}
+
+/// Length of the binary PNM that `bytes` begin with; npos where its head is none.
+std::size_t pnm_length(std::string_view bytes) {
+  std::size_t at = 2, numbers[3] = {};  // width, height, largest value
+  for (std::size_t& number : numbers) {
+    while (at < bytes.size() && (std::isspace(byte_of(bytes, at)) != 0 || bytes[at] == '#'))
+      at = bytes[at] == '#' ? std::min(bytes.find('\n', at), bytes.size()) : at + 1;
+    for (; at < bytes.size() && std::isdigit(byte_of(bytes, at)) != 0 && number < 1'000'000; ++at)
+      number = 10 * number + (byte_of(bytes, at) - std::size_t{'0'});
+    if (number == 0) return kNowhere;
+  }
+  return at + 1 + numbers[0] * numbers[1] * (bytes.starts_with("P6"sv) ? 3 : 1) * (numbers[2] > 255 ? 2 : 1);
+}
+
+int pictures_of_pnm(std::string_view bytes) {
+  int count = 0;
+  for (; bytes.starts_with("P5"sv) || bytes.starts_with("P6"sv); ++count) {
+    const std::size_t length = pnm_length(bytes);
+    if (length == kNowhere || length > bytes.size()) break;
+    bytes.remove_prefix(length);
+  }
+  return std::max(1, count);
+}
+
+}  // namespace
+
+int pictures_held(std::string_view bytes) {
+  if (bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv)) return pages_of_tiff(bytes);
+  if (bytes.starts_with("\x89PNG"sv)) return pictures_of_png(bytes);
+  return pictures_of_pnm(bytes);
 }
 
 Orientation orientation_of(std::string_view bytes) {

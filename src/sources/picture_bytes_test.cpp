@@ -236,6 +236,53 @@ TEST(Wide, ColoursAreScaledAsGrayIs) {
   }
 }
 
+/// A TIFF's second directory is a copy of its first at its end, and a third, of a smaller copy, follows.
+std::string with_more_pages(std::string tiff) {
+  const auto at = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<std::uint8_t>(tiff[i])); };
+  const auto put_at = [&](std::size_t i, std::size_t value) {
+    for (std::size_t k = 0; k < 4; ++k) tiff[i + k] = static_cast<char>(value >> 8 * k);
+  };
+  std::size_t first = at(4) | at(5) << 8 | at(6) << 16, link = first + 2 + 12 * at(first);
+  const std::string directory = tiff.substr(first, link + 4 - first);
+  for (int page = 1; page < 3; ++page) {
+    put_at(link, tiff.size());
+    link = tiff.size() + directory.size() - 4;
+    tiff += directory;
+    put_at(link, 0);
+  }
+  const std::size_t entry = tiff.size() - directory.size() + 2;  // the first one of the last directory becomes its kind
+  tiff.replace(entry, 12, std::string("\xfe\0\x04\0\x01\0\0\0\x01\0\0\0", 12));
+  return tiff;
+}
+
+TEST(SeveralPictures, OfOneFileTheFirstIsUsedAndTheOthersAreSaid) {
+  const TempFolder dir;
+  const auto warning_of = [&](const std::string& name, const std::string& bytes) {
+    put(dir / name, bytes);
+    const auto source = open_source(dir / name);
+    EXPECT_TRUE(source) << name << ": " << source.error().what;
+    return source ? (*source)->warning() : "";
+  };
+  const std::string tiff = coded(AV_CODEC_ID_TIFF, AV_PIX_FMT_GRAY8), png = coded(AV_CODEC_ID_PNG, AV_PIX_FMT_GRAY8);
+  EXPECT_EQ(warning_of("one.tif", tiff), "");
+  EXPECT_NE(warning_of("three.tif", with_more_pages(tiff)).find("three.tif holds 2 pictures"), std::string::npos);
+  EXPECT_EQ(warning_of("one.png", png), "");
+  const std::string frames = big(8, 4) + "acTL" + big(3, 4) + big(0, 4) + big(0, 4);  // with a checksum that nobody reads
+  EXPECT_EQ(pictures_held(png.substr(0, 33) + frames + png.substr(33)), 3);
+  const std::string pgm = "P5\n# a comment\n4 2\n255\n" + std::string(8, 'x'), ppm = "P6 2 2 65535\n" + std::string(24, 'x');
+  EXPECT_EQ(warning_of("one.pgm", pgm), "");
+  EXPECT_NE(warning_of("two.pgm", pgm + pgm).find("holds 2 pictures"), std::string::npos);
+  EXPECT_EQ(pictures_held(ppm + ppm + pgm), 3);
+  EXPECT_EQ(pictures_held(pgm + "P5 9999999999999999999999 1 255\n"), 1);
+  EXPECT_EQ(pictures_held("P5"), 1);
+  std::string circle = tiff;  // its directory follows itself
+  const std::size_t first = static_cast<std::uint8_t>(circle[4]) | static_cast<std::uint8_t>(circle[5]) << 8 |
+                            static_cast<std::uint8_t>(circle[6]) << 16;
+  const std::size_t link = first + 2 + 12 * static_cast<std::uint8_t>(circle[first]);
+  for (std::size_t k = 0; k < 4; ++k) circle[link + k] = circle[4 + k];
+  EXPECT_EQ(pictures_held(circle), 1);
+}
+
 void replace_tag(std::string& tiff, unsigned tag, unsigned value) {
   const auto at = [&](std::size_t i) { return static_cast<unsigned>(static_cast<std::uint8_t>(tiff[i])); };
   const std::size_t directory = at(4) | at(5) << 8 | at(6) << 16;

@@ -135,6 +135,9 @@ class PictureFile final : public FileSource {
   Result<void> open(std::string_view bytes, const std::string& name) {
     DUO_TRY_ASSIGN(frame_, decode(bytes, name));
     orientation_ = orientation_of(bytes);
+    if (const int held = pictures_held(bytes); held > 1)
+      warning_ = fmt::format(
+          "{} holds {} pictures one after the other: the first is used; save each as a file, or all as a video", name, held);
     size_ = upright({frame_->width, frame_->height}, orientation_);
     to_rgb_.see(*frame_);
     if (to_rgb_.convert(*frame_, pixels_)) return {};
@@ -148,6 +151,7 @@ class PictureFile final : public FileSource {
   bool still() const override { return true; }
   std::optional<ViewLayout> layout() const override { return layout_; }
   int views() const override { return views_; }
+  std::string warning() const override { return warning_; }
   void scale_as(FileSource& other) override {
     if (auto* picture = dynamic_cast<PictureFile*>(&other); picture != nullptr) to_rgb_.scale_as(picture->to_rgb_);
   }
@@ -171,6 +175,7 @@ class PictureFile final : public FileSource {
   Size size_;
   std::optional<ViewLayout> layout_;
   int views_ = 1;
+  std::string warning_;
   bool given_ = false;
 };
 

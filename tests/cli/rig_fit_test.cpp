@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "core/coded_picture.h"
 #include "duoptic/rig.h"
 #include "duoptic/sink.h"
 #include "duoptic/source.h"
@@ -120,6 +121,31 @@ TEST_F(RigFitTool, KnownCausesAreNamed) {
   expect_told("depth mirrored.png --rig rig.json -o cause --quiet", "both pictures are mirrored: ");
   expect_told("depth left.png left.png --keep-rows -o cause --quiet", "the same picture");
   expect_told("depth left.png right.png --rig guess.json -o cause --quiet", "not metric");
+}
+
+/// Of two cameras that look at a room in which a box moves, the right one hangs from the tenth picture on.
+TEST_F(RigFitTool, ACameraThatHangsIsSaid) {
+  const SyntheticPair room = render_synthetic({.size = {320, 240}}, 2);
+  const auto with_box = [](const Image<Rgb8>& picture, int at_x) {
+    Image<Rgb8> out = picture.clone();
+    for (int y = 80; y < 160; ++y)
+      for (int x = at_x; x < at_x + 40; ++x) out.at(y, x) = {static_cast<std::uint8_t>(4 * (x - at_x) + 40), 200, 30};
+    return jpeg_of(out, 90);
+  };
+  std::string left, right, hung;
+  for (int i = 0; i < 30; ++i) {
+    left += with_box(room.pair.left.pixels, 20 + 6 * i);
+    right += with_box(room.pair.right.pixels, 10 + 6 * i);
+    hung += with_box(room.pair.right.pixels, 10 + 6 * std::min(i, 10));
+  }
+  for (const auto& [name, bytes] : {std::pair("l.mjpeg", &left), {"r.mjpeg", &right}, {"hung.mjpeg", &hung}})
+    test::put(at(name), *bytes);
+  const std::string words = "19 of the right pictures are the same as the one before";
+  const Ended told = run("record l.mjpeg hung.mjpeg -o hung.mkv --force --quiet");
+  EXPECT_EQ(told.exit, 0);
+  EXPECT_NE(told.err.find(words), std::string::npos) << told.err;
+  EXPECT_EQ(run("record l.mjpeg r.mjpeg -o good.mkv --force --quiet").err.find("the same as the one before"),
+            std::string::npos);
 }
 
 TEST_F(RigFitTool, NothingIsCalledMetresWhereNothingIsMetric) {

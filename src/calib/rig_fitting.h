@@ -1,0 +1,36 @@
+// The two steps of rig_fit(), for who has other work between them.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "calib/scene_matches.h"
+#include "duoptic/rig_fit.h"
+
+namespace duo {
+
+/// Whether some pairs fit a rig: by the first of them what is beyond doubt, then by all.
+class RigFitting {
+ public:
+  /// Pictures of `size`. Takes its memory when it is used.
+  RigFitting(std::optional<Rig> rig, Size size, int threads);
+
+  /// What the first pair tells beyond doubt, right or wrong; none where others have to be looked at, too. To be called once.
+  std::optional<RigFit> by_first(const std::shared_ptr<const Pair>& pair);
+  /// What the first and these tell, after by_first() told nothing.
+  RigFit by_all(std::span<const std::shared_ptr<const Pair>> others);
+
+ private:
+  std::optional<RigFit> by_matches(const SceneMatches& scene) const;
+  void add(const std::shared_ptr<const Pair>& pair);
+
+  const std::optional<Rig> rig_;
+  const Rig lenses_;  // of the rig, or a guess
+  const Size size_;
+  const int threads_;
+  std::optional<SceneMatcher> matcher_;  // of all pairs that were added
+  std::shared_ptr<const Pair> last_;
+};
+
+}  // namespace duo

@@ -1,0 +1,78 @@
+#include "pipeline/repeat_watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+namespace duo {
+namespace {
+
+constexpr int kGrid_px = 8;
+constexpr const char* kSides[] = {"left", "right"};
+
+enum class Change : std::uint8_t { kNone, kLittle, kMotion };
+
+void take_grid(View<const Rgb8> picture, std::vector<std::uint8_t>& into) {
+  into.clear();
+  for (int y = kGrid_px / 2; y < picture.height(); y += kGrid_px)
+    for (int x = kGrid_px / 2; x < picture.width(); x += kGrid_px) into.push_back(picture.row(y)[x].g);
+}
+
+Change change_of(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now) {
+  constexpr int kSame = 1;             // level: what coding a picture again may change; a camera's noise is more
+  constexpr int kStep = 16;            // levels: above the noise of cameras and of coding
+  constexpr std::size_t kShare = 200;  // one of so many pixels: an arm, a head
+  if (before.size() != now.size()) return Change::kLittle;  // the first
+  std::size_t steps = 0;
+  int largest = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const int by = std::abs(now[i] - before[i]);
+    largest = std::max(largest, by);
+    steps += by > kStep;
+  }
+  if (largest <= kSame) return Change::kNone;
+  return steps * kShare >= now.size() ? Change::kMotion : Change::kLittle;
+}
+
+}  // namespace
+
+void RepeatWatch::see(const Pair& pair) {
+  std::array<Change, 2> changes{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    take_grid((i == 0 ? pair.left : pair.right).pixels.view(), now_);
+    changes[i] = change_of(sides_[i].before, now_);
+    std::swap(sides_[i].before, now_);
+  }
+  moved_ += changes[0] == Change::kMotion || changes[1] == Change::kMotion;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Side& side = sides_[i];
+    if (changes[i] != Change::kNone) {
+      side.in_a_row = 0;
+    } else if (changes[1 - i] == Change::kMotion) {
+      ++side.repeated;
+      side.most_in_a_row = std::max(side.most_in_a_row, ++side.in_a_row);
+    }
+  }
+}
+
+std::string RepeatWatch::warning(bool live) const {
+  constexpr int kHangs = 10, kFewest = 5;  // pictures
+  constexpr double kShare = 0.1;           // of the pairs with motion
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Side& side = sides_[i];
+    if (live && side.in_a_row >= kHangs)
+      return fmt::format(
+          "the {} camera hangs: its pictures stay the same while the {} one's move; depth of what moves is wrong", kSides[i],
+          kSides[1 - i]);
+    if (!live && side.repeated >= std::max<double>(kFewest, kShare * moved_))
+      return fmt::format(
+          "{} of the {} pictures are the same as the one before, up to {} in a row, while the {} ones move: its "
+          "camera was slower or hung; depth of what moves is wrong there",
+          side.repeated, kSides[i], side.most_in_a_row, kSides[1 - i]);
+  }
+  return {};
+}
+
+}  // namespace duo
