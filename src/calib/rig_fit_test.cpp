@@ -74,6 +74,25 @@ Camera small_camera(Camera camera) {
   return camera;
 }
 
+/// By a quarter, around the middle.
+Image<Rgb8> zoomed(const Image<Rgb8>& picture) {
+  const auto [w, h] = picture.size();
+  Image<Rgb8> out(picture.size());
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      const double from_x = w / 10.0 + 0.8 * x, from_y = h / 10.0 + 0.8 * y;
+      const int x0 = static_cast<int>(from_x), y0 = static_cast<int>(from_y);
+      const double fx = from_x - x0, fy = from_y - y0;
+      const auto mixed = [&](std::uint8_t Rgb8::*part) {
+        const double upper = (1 - fx) * picture.at(y0, x0).*part + fx * picture.at(y0, x0 + 1).*part,
+                     lower = (1 - fx) * picture.at(y0 + 1, x0).*part + fx * picture.at(y0 + 1, x0 + 1).*part;
+        return static_cast<std::uint8_t>((1 - fy) * upper + fy * lower + 0.5);
+      };
+      out.at(y, x) = {mixed(&Rgb8::r), mixed(&Rgb8::g), mixed(&Rgb8::b)};
+    }
+  return out;
+}
+
 /// As a camera that lies on its side sees the middle of the room.
 Image<Rgb8> on_its_side(const Image<Rgb8>& picture) {
   return placed(picture, kRoomSize, [](int x, int y) {
@@ -228,9 +247,6 @@ TEST(RigFit, APictureThatIsTurnedOverOrANegative) {
 TEST(RigFit, RowsOfAZoomedPictureDoNotFit) {
   const SyntheticPair ideal = render_synthetic({.size = {480, 360}, .ideal = true}, 2);
   const Image<Rgb8>&left = ideal.pair.left.pixels, &right = ideal.pair.right.pixels;
-  const auto zoomed = [](const Image<Rgb8>& picture) {  // by 4 / 3 around the middle
-    return placed(picture, kRoomSize, [](int x, int y) { return std::pair(60 + x * 3 / 4, 45 + y * 3 / 4); });
-  };
   const auto lower = [](const Image<Rgb8>& picture) {
     return placed(picture, kRoomSize, [](int x, int y) { return std::pair(x, y - 12); });
   };

@@ -36,6 +36,12 @@ cv::Mat cv_view(Image<std::uint8_t>& image) {
   return {image.height(), image.width(), CV_8U, image.row(0), static_cast<std::size_t>(image.stride())};
 }
 
+/// Of the picture in which points are looked for.
+Size searched_size(Size gray, SceneSearch search) {
+  while (search == SceneSearch::kQuick && gray.width > kQuickWidth) gray = half_of(gray);
+  return gray;
+}
+
 /// Keeps the best of each cell of the picture, so that they lie all over it.
 void keep_best(std::vector<SceneCandidate>& candidates, Size size, int most_of_a_cell) {
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -56,14 +62,14 @@ struct SceneMatcher::State {
         gray(doubled ? Size{2 * size.width, 2 * size.height} : size),
         smooth_left(gray.size()),
         smooth_right(gray.size()),
-        scratch(gray.size(), kPoints),
+        scratch(searched_size(gray.size(), search), kPoints),
         left(kPoints),
         right(kPoints),
         found(kPoints) {
     scene.size = size;
     if (doubled) small = Image<std::uint8_t>(size);
-    if (!quick) return;
-    for (Size half = size; half.width > kQuickWidth; ++halvings) coarse.emplace_back(half = half_of(half));
+    for (Size half = gray.size(); half != searched_size(gray.size(), search); ++halvings)
+      coarse.emplace_back(half = half_of(half));
   }
 
   void find(const Picture& picture, SiftPoints& out, Image<float>& smooth) {
