@@ -74,13 +74,13 @@ Camera small_camera(Camera camera) {
   return camera;
 }
 
-/// By a quarter, around the middle.
+/// By a seventh, around the middle.
 Image<Rgb8> zoomed(const Image<Rgb8>& picture) {
   const auto [w, h] = picture.size();
   Image<Rgb8> out(picture.size());
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
-      const double from_x = w / 10.0 + 0.8 * x, from_y = h / 10.0 + 0.8 * y;
+      const double from_x = w / 16.0 + 0.875 * x, from_y = h / 16.0 + 0.875 * y;
       const int x0 = static_cast<int>(from_x), y0 = static_cast<int>(from_y);
       const double fx = from_x - x0, fy = from_y - y0;
       const auto mixed = [&](std::uint8_t Rgb8::*part) {
