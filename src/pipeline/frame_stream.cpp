@@ -229,8 +229,8 @@ Result<Next> FrameStream::next(Matched& into) {
   std::swap(into, taken_);
   taken_.frame.reset();  // back into their pools
   taken_.pair.reset();
+  if (into.setup == setup_) return Next::kNew;  // without the lock, which is held while the engine finishes a frame
   const std::lock_guard lock(engine_mutex_);
-  if (into.setup == setup_) return Next::kNew;
   empty_engine();
   make_anew(into);
   refill_engine();
