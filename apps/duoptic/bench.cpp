@@ -56,7 +56,7 @@ struct Options {
   std::string what = "all", engine = "both", size = "both", instructions;
   std::vector<std::string> clips;
   int repeat = 11;
-  bool fine = false, focus = false, json = false;
+  bool fine = false, whole = false, json = false;
 };
 
 struct Contestant {
@@ -239,7 +239,7 @@ Result<Exit> run(const Options& options) {
   nlohmann::json out = nlohmann::json::array();
   if (!options.clips.empty()) {
     const std::string engine = options.engine == "both" ? "simd" : options.engine;
-    DUO_TRY_ASSIGN(out, bench_chain::tables({options.clips, engine, options.focus, options.repeat, options.json}));
+    DUO_TRY_ASSIGN(out, bench_chain::tables({options.clips, engine, options.whole, options.repeat, options.json}));
     if (options.json) fmt::print("{}\n", out.dump(2));
     return Exit::kOk;
   }
@@ -302,7 +302,8 @@ Command add(CLI::App& app) {
       sub->add_option("--clip", options->clips, "The whole way from the two videos of a clip to joints, part by part")
           ->type_name("DIR")
           ->allow_extra_args(false);
-  sub->add_flag("--focus", options->focus, "Of --clip: match around people alone, as duoptic track --focus does")->needs(clip);
+  sub->add_flag("--whole", options->whole, "Of --clip: match each frame as a whole, as duoptic track --whole does")
+      ->needs(clip);
   CLI::Option* fine = sub->add_flag("--fine", options->fine, "With the matcher fine of engine simd, too: seconds a frame");
   for (CLI::Option* other : {what, size, fine}) clip->excludes(other);
   sub->add_flag("--json", options->json, "Print it as JSON");

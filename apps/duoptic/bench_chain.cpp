@@ -73,6 +73,7 @@ struct Run {
   std::vector<Part> parts;
   Times whole;  // of all frames
   int frames = 0;
+  bool focus = false;  // around people
 };
 
 std::size_t bytes_of(const Frame& frame) {
@@ -109,6 +110,7 @@ Result<Run> run_clip(const Clip& clip, const PipelineSetup& setup) {
   DUO_TRY_ASSIGN(auto pairs, open_pairs(clip.setup.names[0], clip.setup.names[1]));
   const Size size = pairs->size();
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::make_unique<TimedPairs>(std::move(pairs), decode_ms), setup));
+  out.focus = pipeline.header().focus;
   DUO_TRY_ASSIGN(auto sink, make_json_lines(lines.path(), pipeline.header()));
   DUO_TRY(pipeline.add_sink("lines", std::move(sink)));
   std::vector<Part> stages;
@@ -225,7 +227,7 @@ Result<nlohmann::json> chain_table(const Clip& clip, const What& what) {
                         {"width", clip.rig.left.size.width},
                         {"height", clip.rig.left.size.height},
                         {"engine", what.engine},
-                        {"focus", what.focus},
+                        {"focus", parts[0].focus},
                         {"parts", to_json(median_of(parts))},
                         {"track", runs}};
 }
@@ -239,7 +241,7 @@ Result<nlohmann::json> tables(const What& what) {
     DUO_TRY_ASSIGN(clip.rig, load_rig((clip.folder / "calibration_truth.yml").string()));
     TrackingOptions tracking;
     tracking.tracker = "body";
-    tracking.focus = what.focus;
+    tracking.focus = what.whole ? PeopleFocus::kOff : PeopleFocus::kWherePossible;
     tracking.engine.engine = what.engine;
     DUO_TRY_ASSIGN(clip.setup, tracking.setup({nullptr, clip.rig, {folder + "/left.avi", folder + "/right.avi"}}));
     DUO_TRY_ASSIGN(nlohmann::json table, chain_table(clip, what));

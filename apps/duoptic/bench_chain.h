@@ -12,7 +12,7 @@ namespace duo::app::bench_chain {
 struct What {
   std::vector<std::string> clips;  // folders with left.avi, right.avi and calibration_truth.yml
   std::string engine;
-  bool focus = false;
+  bool whole = false;  // match each frame as a whole
   int repeat = 1;
   bool json = false;  // else each clip's table is printed as soon as it is known
 };

@@ -72,7 +72,8 @@ void SinkOptions::add_to(CLI::App& app) {
       ->capture_default_str();
 }
 
-bool SinkOptions::wants_maps() const { return !targets[kVideo].empty() || !targets[kMcap].empty(); }
+bool SinkOptions::wants_maps() const { return !targets[kVideo].empty() || writes_depth(); }
+bool SinkOptions::writes_depth() const { return !targets[kMcap].empty(); }
 
 /// How many outputs were sent to stdout.
 std::ptrdiff_t SinkOptions::sent_to_stdout() const {

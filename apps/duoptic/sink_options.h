@@ -35,6 +35,8 @@ struct SinkOptions {
   void add_to(CLI::App& app);
   /// An output shows the whole frame, not people alone.
   bool wants_maps() const;
+  /// An output holds the depth of the whole picture.
+  bool writes_depth() const;
   /// Whether an output goes to stdout: the JSON lines where nothing else is sent there.
   ///
   /// Errors  thrown as usage: two outputs do

@@ -47,7 +47,7 @@ struct Options {
   InputOptions input;
   RigCheck check = RigCheck::kTell;
   double budget_percent = 0;
-  bool force = false, stats = false, quiet = false, realtime = false;
+  bool whole = false, force = false, stats = false, quiet = false, realtime = false;
   TrackingOptions tracking;
   SinkOptions sinks;
 };
@@ -171,6 +171,8 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
                                 .replace = options.force};
   tracking.all_maps = options.sinks.wants_maps();
   tracking.in_bulk = true;
+  if (tracking.focus == PeopleFocus::kOff && !options.whole && !options.sinks.writes_depth())
+    tracking.focus = PeopleFocus::kWherePossible;
   DUO_TRY_ASSIGN(PipelineSetup setup, tracking.setup(input));
   setup.first = options.at_frame;
   setup.tell_times = options.stats;
@@ -235,6 +237,7 @@ Command add(CLI::App& app) {
       ->check(within(1.0, 100'000.0));
   add_strict_option(*sub, options->check);
   options->tracking.add_to(*sub);
+  sub->add_flag("--whole", options->whole, "Match each frame as a whole, not around people alone")->excludes("--focus");
   sub->add_flag("--stats", options->stats, "Add times to each line and print a summary of them on stderr");
   sub->add_flag("--quiet", options->quiet, "No progress and no summary");
   sub->footer(kFooter);

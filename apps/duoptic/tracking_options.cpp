@@ -28,10 +28,12 @@ void TrackingOptions::add_to(CLI::App& app) {
       "--hands", hands,
       "Fingers, too: 20 joints more of each hand, and how far the tips of thumb and index finger are apart. Looks for\n"
       "both hands in every frame, not in turn");
-  app.add_flag("--focus", focus,
-               "Match around people alone, and every 16th frame as a whole: a quarter to a half of the CPU time less, joints "
-               "like those\n"
-               "of whole frames but not to the bit. Of the tracker body; the CPU makes the frames");
+  app.add_flag_callback(
+      "--focus", [this] { focus = PeopleFocus::kOn; },
+      "Match around people alone, and every 16th frame as a whole: a quarter to a half of the CPU time less, joints like "
+      "those\n"
+      "of whole frames but not to the bit. Of the tracker body; the CPU makes the frames. What track does by itself where the\n"
+      "CPU makes the frames and no output holds depth");
 }
 
 TrackingOptions TrackingOptions::or_tracker(const char* name) const {

@@ -17,7 +17,7 @@ struct TrackingOptions {
   std::string tracker;         // empty: the command's own
   std::string model = "full";  // of a tracker with networks
   int max_disparity = 0;       // 0: what something at kNearest_m has
-  bool focus = false;
+  PeopleFocus focus = PeopleFocus::kOff;
   bool hands = false;     // fingers, too: the tracker body_hands for body
   bool all_maps = false;  // frames are drawn or scored, not only tracked
   bool in_bulk = false;   // of files: as many frames per second as can be, rather than each soon

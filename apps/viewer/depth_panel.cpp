@@ -35,6 +35,7 @@ Result<void> Panels::paint_depth() {
   if (choices_.own_range)
     shown_range_ = {header_.rectified.disparity_px(choices_.far_m), header_.rectified.disparity_px(choices_.near_m)};
   color_disparity(shown_->frame->disparity.d_q4, shown_range_, painted_, choices_.colors);
+  draw_unmatched(*shown_->frame, painted_);
   DUO_TRY(depth_.set(painted_));
   painted_choices_ = choices_;
   depth_stale_ = false;
@@ -55,7 +56,8 @@ void Panels::put_depth_at_pointer(const Fit& fit) const {
   const int x = std::clamp(static_cast<int>((mouse.x - fit.from.x) / fit.scale), 0, d_q4.width() - 1);
   const int y = std::clamp(static_cast<int>((mouse.y - fit.from.y) / fit.scale), 0, d_q4.height() - 1);
   const std::uint16_t d = d_q4.at(y, x);
-  std::string text = "no depth";
+  const duo::Window& matched = shown_->frame->matched;
+  std::string text = matched.empty() || matched.contains(y, x) ? "no depth" : "not matched";
   if (d != Disparity::kNone && d != 0) {
     const Vec3 p_m = header_.rectified.triangulate({static_cast<double>(x), static_cast<double>(y)}, d / 16.0);
     text = fmt::format("{:.2f}{}   x {:+.2f}  y {:+.2f}", p_m.z, header_.metric ? " m" : "", p_m.x, p_m.y);

@@ -8,6 +8,7 @@
 
 #include "duoptic/image.h"
 #include "duoptic/rig.h"
+#include "duoptic/window.h"
 
 namespace [[gnu::visibility("default")]] duo {
 
@@ -65,6 +66,7 @@ struct Frame {
   Image<std::uint8_t> left_inside, right_inside;  // 255 where the raw picture covers the pixel, 0 outside; empty = all inside
   Image<Rgb8> color;                              // rectified left picture (want: color)
   Disparity disparity;
+  Window matched = {};                 // what was matched, where that is not all (see Engine::focus()); empty: all
   Image<std::uint8_t> confidence;      // 1 (doubtful) .. 255 (sure) where measured, else 0 (want: confidence)
   Image<std::uint16_t> depth_mm;       // z in the rig frame, 0 = none (want: depth; needs a rig)
   DeviceMaps* on_device = nullptr;     // valid as long as the frame (want: on_device); null on the CPU

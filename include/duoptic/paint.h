@@ -36,6 +36,12 @@ enum class DepthColors : std::uint8_t { kTurbo, kCividis, kGray };
 void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range, View<Rgb8> dst,
                      DepthColors colors = DepthColors::kTurbo);
 
+/// What of a drawn depth map was not matched (Frame::matched): the rectified picture, dark and gray, with a line around the
+/// part that was matched.
+///
+/// Shape  dst like the frame's maps
+void draw_unmatched(const Frame& frame, View<Rgb8> dst);
+
 /// The colour of a joint in draw_regions().
 Rgb8 shade_of(JointId joint);
 

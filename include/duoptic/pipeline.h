@@ -27,6 +27,13 @@ enum class RigCheck : std::uint8_t {
   kStrict,  // and next() ends with an error where the verdict is not good
 };
 
+/// Whether frames are matched around the people of frames before and nowhere else, every 16th as a whole.
+enum class PeopleFocus : std::uint8_t {
+  kOff,
+  kWherePossible,  // by the CPU, with a tracker that finds people by itself, a matcher that can, and holes left open
+  kOn,             // or Pipeline::open() says what is in the way; the CPU makes the frames
+};
+
 struct PipelineSetup {
   std::vector<std::string> names = {};  // of the source's parts, left first, for the sinks
   std::string engine = "auto";          // see make_engine(); empty: pairs without frames
@@ -37,8 +44,7 @@ struct PipelineSetup {
   BodyModel body_model = BodyModel::kFull;  // of a tracker with networks
   std::int64_t first = 0;                   // pairs before this number are passed over
   std::int64_t every = 1;                   // and of those from there on, all but every N-th
-  bool focus = false;                       // frames are matched around the people of frames before, and nowhere else; every
-                                            // 16th as a whole. Of a tracker that needs no more, on engines that can_focus()
+  PeopleFocus focus = PeopleFocus::kOff;    // TrackHeader::focus tells what became of it
   double budget_percent = 0;                // of a live source: pairs are left out so that the process takes no more CPU time
                                             // than this, 100 being one core; 0: no limit
   bool in_turn = false;     // what runs in threads side by side runs in the caller's, in turn: to measure what each part costs

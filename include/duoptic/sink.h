@@ -51,7 +51,7 @@ struct TrackHeader {
   double frame_s = 1.0 / 30;
   bool live = false;   // from cameras: what differs from run to run is told, too
   bool metric = true;  // as Rig::metric
-  bool focus = false;  // frames were matched around people alone
+  bool focus = false;  // frames are matched around people alone
 };
 
 struct TrackTimes {
@@ -117,8 +117,8 @@ Result<std::unique_ptr<Sink>> make_gltf(const std::filesystem::path& path, const
 /// Errors  those of every written file
 Result<std::unique_ptr<Sink>> make_trc(const std::filesystem::path& path, const TrackHeader& header);
 
-/// Depth, its camera, coloured points and people as messages of ROS 2 in an MCAP file, see docs/formats.md. Frames need disparity
-/// and colour.
+/// Depth, its camera, coloured points and people as messages of ROS 2 in an MCAP file, see docs/formats.md. Frames need
+/// disparity and colour.
 ///
 /// Errors  those of every written file
 Result<std::unique_ptr<Sink>> make_mcap(const std::filesystem::path& path, const TrackHeader& header);

@@ -34,7 +34,7 @@ struct FocusMaps {
   /// Columns left of the right picture are its first one, and not inside.
   /// `balanced`: the frame's right picture, as it is compared.
   void cut(const FocusPart& part, const Frame& frame, View<const std::uint8_t> balanced);
-  /// Disparity and confidence of the window that is kept; none elsewhere.
+  /// Disparity and confidence of the window that is kept, which becomes what was matched; none elsewhere.
   void put(const FocusPart& part, Frame& frame) const;
 };
 

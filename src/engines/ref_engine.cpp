@@ -75,6 +75,7 @@ class RefEngine final : public Engine {
       gray.right_color = right_color_;
     }
     const bool whole = !can_focus() || focus_.window.within(prepared_.size).empty();
+    frame.matched = {};
     if (whole)
       std::visit([&](auto& matcher) { matcher.match(gray, {disparity.d_q4, frame.confidence, filled_}, timer_); }, *matcher_);
     else

@@ -47,6 +47,7 @@ void SimdFrames::make(const Pair& pair, std::span<const Window> windows, const F
   const bool whole = prepared_.match_color || focus.window.within(prepared_.size).empty();
   GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside, turn};
   if (whole) {
+    frame.matched = {};
     // What fills a hole may come from anywhere in the picture.
     const RowBand matched = setup.fill ? RowBand{} : RowBand::of(windows, prepared_.size);
     if (prepared_.match_color) {

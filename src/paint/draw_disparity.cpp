@@ -84,6 +84,21 @@ void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range
     for (int x = 0; x < d_q4.width(); ++x) dst.at(y, x) = colors[d_q4.at(y, x)];
 }
 
+void draw_unmatched(const Frame& frame, View<Rgb8> dst) {
+  constexpr int kDarker = 3;
+  constexpr Rgb8 kLine = {225, 225, 225};
+  const Window& matched = frame.matched;
+  DUO_CHECK(frame.disparity.d_q4.size() == dst.size());
+  if (matched.empty()) return;
+  const Window inner = {matched.x + 1, matched.y + 1, matched.width - 2, matched.height - 2};
+  for (int y = 0; y < dst.height(); ++y)
+    for (int x = 0; x < dst.width(); ++x) {
+      if (inner.contains(y, x)) continue;
+      const auto gray = static_cast<std::uint8_t>(frame.left.empty() ? 0 : frame.left.at(y, x) / kDarker);
+      dst.at(y, x) = matched.contains(y, x) ? kLine : Rgb8{gray, gray, gray};
+    }
+}
+
 void draw_legend(View<Rgb8> dst, const DisparityRange& range, const Rectified* rectified) {
   const cv::Mat rgb(dst.height(), dst.width(), CV_8UC3, dst.data(), static_cast<std::size_t>(dst.stride()) * sizeof(Rgb8));
   const double zoom = rgb.rows / 44.0;

@@ -182,8 +182,9 @@ Image<Rgb8> draw_panels(const TrackedFrame& frame, const TrackHeader& header, co
 
   Image<Rgb8> drawn(frame.frame->color.size());
   color_disparity(frame.frame->disparity.d_q4, range, drawn);
+  draw_unmatched(*frame.frame, drawn);
   fit(drawn, depth.picture);
-  put_title(depth, layout, "depth", "metres");
+  put_title(depth, layout, "depth", frame.frame->matched.empty() ? "metres" : "metres; gray: not matched");
   draw_legend(depth.caption, range, header.metric ? &header.rectified : nullptr);
 
   draw_regions(*frame.frame, header.rectified, frame.people, drawn);

@@ -32,6 +32,23 @@ TEST(ColorDisparity, GrayAndCividisGrowBrighterTowardsTheCameras) {
   EXPECT_EQ(painted.at(0, 3), Rgb8{});
 }
 
+TEST(DrawUnmatched, DarkPictureAroundALineAroundWhatWasMatched) {
+  Frame frame;
+  frame.left = Image<std::uint8_t>({5, 4});
+  frame.disparity.d_q4 = Image<std::uint16_t>({5, 4});
+  for (int y = 0; y < 4; ++y) std::fill_n(frame.left.row(y), 5, std::uint8_t{90});
+  constexpr Rgb8 kDrawn = {1, 2, 3}, kLine = {225, 225, 225}, kDark = {30, 30, 30};
+  Image<Rgb8> painted({5, 4});
+  for (int y = 0; y < 4; ++y) std::fill_n(painted.row(y), 5, kDrawn);
+  draw_unmatched(frame, painted);
+  EXPECT_EQ(painted.at(0, 0), kDrawn);  // all was matched
+  frame.matched = {1, 0, 3, 3};
+  draw_unmatched(frame, painted);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 5; ++x)
+      EXPECT_EQ(painted.at(y, x), x == 2 && y == 1 ? kDrawn : frame.matched.contains(y, x) ? kLine : kDark) << x << "," << y;
+}
+
 TEST(Shapes, BonesAndMarksByHand) {
   Moment moment({320, 240});
   moment.set(kShoulder, {0, 0, 2}, 0.04, 1, 10, 20, JointState::kSeen);

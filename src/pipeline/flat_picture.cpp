@@ -86,6 +86,7 @@ std::shared_ptr<const Frame> without_depth(std::shared_ptr<const Frame> frame) {
                 .color = copy_of(from.color),
                 .disparity = {filled(from.disparity.d_q4.size(), Disparity::kNone),
                               filled(from.disparity.origin.size(), static_cast<std::uint8_t>(Origin::kNone))},
+                .matched = from.matched,
                 .confidence = filled(from.confidence.size(), std::uint8_t{0}),
                 .depth_mm = filled(from.depth_mm.size(), std::uint16_t{0}),
                 .on_device = from.on_device,

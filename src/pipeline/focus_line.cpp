@@ -13,34 +13,33 @@ constexpr double kNearest_m = 0.3;  // nobody is tracked nearer
 
 Focus around(std::span<const Person> people, const Rectified& rectified, double ahead_s) {
   double left = rectified.size.width, top = rectified.size.height, right = 0, bottom = 0;
-  double nearest_m = HUGE_VAL, farthest_m = 0;
   for (const Person& person : people)
     for (std::size_t i = 0; i < person.count(); ++i) {
       const Joint& joint = person.joints[i];
       if (joint.state == JointState::kLost) continue;
       for (const double s : {0.0, ahead_s}) {
         const Vec3 p_m = joint.p_in_rig_m + s * joint.v_in_rig_m_s;
-        const double z_m = std::max(p_m.z, kNearest_m), near_m = std::max(z_m - kAround_m, kNearest_m);
+        const double z_m = std::max(p_m.z, kNearest_m);
         const Vec2 at = rectified.project({p_m.x, p_m.y, z_m});
-        const double reach = rectified.focal_px * kAround_m / near_m;
+        const double reach = rectified.focal_px * kAround_m / std::max(z_m - kAround_m, kNearest_m);
         left = std::min(left, at.x - reach), right = std::max(right, at.x + reach);
         top = std::min(top, at.y - reach), bottom = std::max(bottom, at.y + reach);
-        nearest_m = std::min(nearest_m, near_m), farthest_m = std::max(farthest_m, z_m + kAround_m);
       }
     }
-  if (farthest_m <= 0) return {};
   const auto whole = [](double px, int most) { return static_cast<int>(std::clamp(px, 0.0, static_cast<double>(most))); };
   Focus out;
+  out.disparity_end = Engine::kMaxDisparity;
   out.window.x = whole(left, rectified.size.width), out.window.y = whole(top, rectified.size.height);
   out.window.width = whole(right + 1, rectified.size.width) - out.window.x;
   out.window.height = whole(bottom + 1, rectified.size.height) - out.window.y;
-  out.disparity_begin = static_cast<int>(rectified.disparity_px(farthest_m));
-  out.disparity_end = static_cast<int>(rectified.disparity_px(nearest_m)) + 2;
   return out.window.empty() ? Focus() : out;
 }
 
-void FocusLine::tell(std::span<const Person> people) {
-  const Focus focus = around(people, rectified_, ahead_s_);
+void FocusLine::tell(std::span<const Person> people, TimeNs t_ns) {
+  constexpr double kIntervals = 2, kMost_s = 1;  // until the pair that this is for is taken, and until the next one
+  const double interval_s = static_cast<double>(t_ns - last_ns_.value_or(t_ns)) * 1e-9;
+  last_ns_ = t_ns;
+  const Focus focus = around(people, rectified_, std::max(ahead_s_, std::min(kIntervals * interval_s, kMost_s)));
   {
     const std::lock_guard lock(mutex_);
     ring_[static_cast<std::size_t>(told_++) % ring_.size()] = focus;
@@ -51,9 +50,15 @@ void FocusLine::tell(std::span<const Person> people) {
 Focus FocusLine::next() {
   std::unique_lock lock(mutex_);
   const std::int64_t frame = live_ ? told_ - 1 : asked_ - kBehind;
-  if (asked_++ % kWholeEvery == kFirstWhole || frame < 0) return {};
+  const std::int64_t pair = asked_++;
+  if (pair % kWholeEvery == kFirstWhole || frame < 0) return {};
   news_.wait(lock, [&] { return closed_ || told_ > frame; });
-  return closed_ ? Focus() : ring_[static_cast<std::size_t>(frame) % ring_.size()];
+  return closed_ || pair == anew_ ? Focus() : ring_[static_cast<std::size_t>(frame) % ring_.size()];
+}
+
+void FocusLine::forget() {
+  const std::lock_guard lock(mutex_);
+  anew_ = live_ ? asked_ : told_ + kBehind;
 }
 
 void FocusLine::close() {

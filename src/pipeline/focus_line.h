@@ -5,22 +5,24 @@
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <span>
 
 #include "duoptic/engine.h"
+#include "duoptic/frame.h"
 #include "duoptic/person.h"
 #include "duoptic/rig.h"
 
 namespace duo {
 
-/// The box around people and the disparities that they may have `ahead_s` later: each joint where it is and where its velocity
-/// takes it, and 25 cm around both: half a body's
-/// depth, and what a hand that turns back gains in a tenth of a second. Empty, which is all, where nobody is.
+/// The box around people: each joint where it is and where its velocity takes it in `ahead_s`, and 25 cm around both, half a
+/// body's depth and what a hand that turns back gains in a tenth of a second. Between all disparities: without those of what is
+/// behind or before people, or of what matches nothing, plain walls take theirs. Empty, which is all, where nobody is.
 Focus around(std::span<const Person> people, const Rectified& rectified, double ahead_s);
 
 /// Of files, pair n is matched around the people of frame n - kBehind, whatever the threads; of a live source around those of
 /// the newest frame. Every kWholeEvery-th pair is matched as a whole, from number kFirstWhole on: people who come in are found
-/// there. The tracker body looks for them by their depth in every 8th frame from the fourth on.
+/// there.
 ///
 /// Threads  one that tells, one that asks, and any that closes
 class FocusLine {
@@ -30,10 +32,12 @@ class FocusLine {
   FocusLine(const Rectified& rectified, double frame_s, bool live)
       : rectified_(rectified), ahead_s_(kBehind * frame_s), live_(live) {}
 
-  /// The people of the next frame.
-  void tell(std::span<const Person> people);
+  /// The people of the next frame, and its time: where frames come at longer intervals, people get farther.
+  void tell(std::span<const Person> people, TimeNs t_ns);
   /// For the next pair; waits for the frame that it depends on.
   Focus next();
+  /// The people are forgotten: the first pair that can know of it is matched as a whole.
+  void forget();
   /// Lets next() return.
   void close();
 
@@ -44,8 +48,9 @@ class FocusLine {
   std::mutex mutex_;  // of what follows
   std::condition_variable news_;
   std::array<Focus, kBehind + 1> ring_;
-  std::int64_t told_ = 0, asked_ = 0;
+  std::int64_t told_ = 0, asked_ = 0, anew_ = -1;  // anew_: a pair that is matched as a whole
   bool closed_ = false;
+  std::optional<TimeNs> last_ns_;  // of who tells
 };
 
 }  // namespace duo

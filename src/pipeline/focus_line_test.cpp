@@ -24,13 +24,13 @@ Person with_head_at(Vec3 p_m, Vec3 v_m_s = {}) {
   return person;
 }
 
-TEST(FocusLine, TheBoxAroundAJointAndItsDisparities) {
-  // 2 m away, 25 cm around it: 1.75 .. 2.25 m; 500 * 0.25 / 1.75 = 71.43 px to each side.
+TEST(FocusLine, TheBoxAroundAJoint) {
+  // 25 cm around what is 2 m away: 500 * 0.25 / 1.75 = 71.43 px to each side.
   const Person person = with_head_at({0, 0, 2});
   const Focus focus = around({&person, 1}, plain_rig(), 0.1);
   EXPECT_EQ(focus.window, (Window{248, 168, 392 - 248, 312 - 168}));
-  EXPECT_EQ(focus.disparity_begin, 22);  // 50 / 2.25 = 22.2
-  EXPECT_EQ(focus.disparity_end, 30);    // 50 / 1.75 = 28.6
+  EXPECT_EQ(focus.disparity_begin, 0);
+  EXPECT_EQ(focus.disparity_end, Engine::kMaxDisparity);
 }
 
 TEST(FocusLine, GoesWhereTheJointWillBe) {
@@ -52,20 +52,20 @@ TEST(FocusLine, OfFilesThePairsWaitForTheFrameTheyDependOn) {
   FocusLine line(plain_rig(), 1.0 / 30, false);
   const Person near = with_head_at({0, 0, 1}), far = with_head_at({0, 0, 2});
   for (int n = 0; n < FocusLine::kBehind; ++n) EXPECT_TRUE(line.next().window.empty());
-  line.tell({&near, 1});
+  line.tell({&near, 1}, 0);
   std::thread teller([&] {
-    line.tell({&near, 1});
-    line.tell({&far, 1});
+    line.tell({&near, 1}, 0);
+    line.tell({&far, 1}, 0);
   });
   EXPECT_EQ(line.next(), around({&near, 1}, plain_rig(), FocusLine::kBehind / 30.0));
   EXPECT_TRUE(line.next().window.empty());  // number 4
   EXPECT_EQ(line.next(), around({&far, 1}, plain_rig(), FocusLine::kBehind / 30.0));
   teller.join();
   for (int n = 6; n < FocusLine::kFirstWhole + FocusLine::kWholeEvery; ++n) {
-    line.tell({&far, 1});
+    line.tell({&far, 1}, 0);
     EXPECT_FALSE(line.next().window.empty());
   }
-  line.tell({&far, 1});
+  line.tell({&far, 1}, 0);
   EXPECT_TRUE(line.next().window.empty());  // number 20
   line.close();
   EXPECT_TRUE(line.next().window.empty());  // would wait
@@ -76,10 +76,38 @@ TEST(FocusLine, LiveTheNewestFrameCountsAndNobodyWaits) {
   EXPECT_TRUE(line.next().window.empty());
   EXPECT_TRUE(line.next().window.empty());
   const Person person = with_head_at({0, 0, 2});
-  line.tell({});
-  line.tell({&person, 1});
+  line.tell({}, 0);
+  line.tell({&person, 1}, 0);
   EXPECT_EQ(line.next(), around({&person, 1}, plain_rig(), FocusLine::kBehind / 30.0));
   EXPECT_EQ(line.next(), around({&person, 1}, plain_rig(), FocusLine::kBehind / 30.0));
+}
+
+TEST(FocusLine, WhereFramesAreLeftOutPeopleGetFarther) {
+  FocusLine line(plain_rig(), 1.0 / 30, true);
+  const Person person = with_head_at({0, 0, 2}, {0.5, 0, 0});
+  line.tell({&person, 1}, 0);
+  line.tell({&person, 1}, 250'000'000);
+  EXPECT_EQ(line.next(), around({&person, 1}, plain_rig(), 0.5));
+  line.tell({&person, 1}, 280'000'000);
+  EXPECT_EQ(line.next(), around({&person, 1}, plain_rig(), FocusLine::kBehind / 30.0));
+}
+
+TEST(FocusLine, ForgetsPeople) {
+  const Person person = with_head_at({0, 0, 2});
+  FocusLine live(plain_rig(), 1.0 / 30, true);
+  live.tell({&person, 1}, 0);
+  live.forget();
+  EXPECT_TRUE(live.next().window.empty());
+  EXPECT_FALSE(live.next().window.empty());
+  // Of files pair 6 was free to go once frame 3 was told: pair 7 is the first that can know.
+  FocusLine files(plain_rig(), 1.0 / 30, false);
+  for (int n = 0; n < 4; ++n) files.tell({&person, 1}, 0);
+  files.forget();
+  for (int n = 4; n < 7; ++n) files.tell({&person, 1}, 0);
+  for (int n = 0; n < 9; ++n) {
+    const bool whole = n < FocusLine::kBehind || n == FocusLine::kFirstWhole || n == 7;
+    EXPECT_EQ(files.next().window.empty(), whole) << n;
+  }
 }
 
 }  // namespace

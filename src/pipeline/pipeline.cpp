@@ -47,6 +47,7 @@ struct Pipeline::State {
 
   Result<void> prepare();
   Result<void> prepare_engine(const Setup& of_engine);
+  Result<void> settle_focus();
   Result<void> prepare_tracker();
   Result<void> start();
   Result<FrameStream::Passed> pass_over();
@@ -98,12 +99,12 @@ Result<void> Pipeline::State::prepare() {
     }
     add_wants(tracker->wants(), of_engine.wants);
     header.tracker = tracker->name();
-    header.focus = setup.focus;
     header.skeletons.assign(tracker->skeletons().begin(), tracker->skeletons().end());
   }
   if (setup.threads <= 0) setup.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   DUO_TRY_ASSIGN(engine, make_engine(setup.engine, setup.threads));
   DUO_TRY(prepare_engine(of_engine));
+  DUO_TRY(settle_focus());
   header.engine = engine->name();
   header.device = engine->device();
   header.matcher = of_engine.matcher;
@@ -115,22 +116,29 @@ Result<void> Pipeline::State::prepare() {
 Result<void> Pipeline::State::prepare_engine(const Setup& of_engine) {
   if (frames) return frames->prepare(of_engine, last);  // each of its pairs comes with a focus
   DUO_TRY(engine->prepare(of_engine));
-  if (setup.focus && engine->can_focus()) engine->focus({});  // from the first frame on
+  if (header.focus) engine->focus({});  // from the first frame on
+  return {};
+}
+
+Result<void> Pipeline::State::settle_focus() {
+  if (setup.focus == PeopleFocus::kOff || tracker == nullptr) return {};
+  std::string why_not;
+  if (!tracker->starts_by_itself())
+    why_not = fmt::format("the tracker {} does not follow whole people", tracker->name());
+  else if (!engine->can_focus())
+    why_not = fmt::format("the engine {} matches whole pictures with matcher {}; take engine simd and another matcher",
+                          engine->name(), setup.frames.matcher);
+  else if (setup.frames.fill)
+    why_not = "to fill holes takes the whole picture; leave one of both out";
+  if (setup.focus == PeopleFocus::kOn && !why_not.empty())
+    return Error{ErrorCode::kUnsupported, fmt::format("cannot match around people alone: {}", why_not)};
+  header.focus = why_not.empty() && (setup.focus == PeopleFocus::kOn || engine->device().empty());
+  if (header.focus) engine->focus({});
   return {};
 }
 
 Result<void> Pipeline::State::prepare_tracker() {
   if (tracker == nullptr) return {};
-  if (setup.focus) {
-    const auto no = [](std::string why) {
-      return Error{ErrorCode::kUnsupported, fmt::format("cannot match around people alone: {}", why)};
-    };
-    if (!tracker->starts_by_itself()) return no(fmt::format("the tracker {} does not follow whole people", tracker->name()));
-    if (!engine->can_focus())
-      return no(fmt::format("the engine {} matches whole pictures with matcher {}; take engine simd and another matcher",
-                            engine->name(), setup.frames.matcher));
-    if (setup.frames.fill) return no("to fill holes takes the whole picture; leave one of both out");
-  }
   // The engine makes the next frame on all threads meanwhile: a layer of a network that is shared by as many would wait for
   // them.
   const int threads = std::max(1, setup.threads / 2);
@@ -165,7 +173,7 @@ Result<void> Pipeline::State::start() {
   if (frames) return {};
   DUO_CHECK(waiting != nullptr);
   int at_once = setup.frames.many_at_once && engine ? engine->in_flight() : 1;
-  if (setup.focus && tracker) {
+  if (header.focus) {
     at_once = std::min(at_once, FocusLine::kBehind - 1);  // the frame that the next pair depends on must have been tracked
     focus = std::make_unique<FocusLine>(header.rectified, header.frame_s * static_cast<double>(setup.every), header.live);
   }
@@ -222,7 +230,7 @@ Result<Next> Pipeline::next() {
   if (s.tracker == nullptr) return next;
   const std::int64_t begin_ns = wall_ns();
   s.keep(s.tracker->track(*s.last.frame));
-  if (s.focus) s.focus->tell(s.people);
+  if (s.focus) s.focus->tell(s.people, s.last.frame->t_ns);
   s.tracker_ms = static_cast<double>(wall_ns() - begin_ns) * 1e-6;
   return next;
 }
@@ -265,6 +273,7 @@ Result<void> Pipeline::select(std::span<const Selection> selections) {
 
 void Pipeline::forget() {
   if (state_->tracker) state_->tracker->reset();
+  if (state_->focus) state_->focus->forget();
   state_->people.clear();
 }
 

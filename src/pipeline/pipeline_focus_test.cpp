@@ -69,11 +69,12 @@ TEST(PipelineTracker, IsToldTheTimeFromOneOfItsFramesToTheNext) {
 
 // Which frames are matched around whom does not depend on who makes how many at once.
 TEST(PipelineFocus, FollowsPeople) {
-  const auto frames = [](int threads, bool focus) {
+  const auto frames = [](int threads, PeopleFocus focus) {
     PipelineSetup setup = pipeline_setup(threads, true);
     setup.focus = focus;
     auto pipeline = Pipeline::open(std::make_unique<Clip>(), std::move(setup), std::make_unique<Walker>());
     EXPECT_TRUE(pipeline) << pipeline.error().what;
+    EXPECT_EQ(pipeline->header().focus, focus != PeopleFocus::kOff);
     return frames_of(*pipeline);
   };
   const auto known = [](const Frame& frame) {
@@ -82,11 +83,15 @@ TEST(PipelineFocus, FollowsPeople) {
       for (int x = 0; x < frame.disparity.d_q4.width(); ++x) out += frame.disparity.d_q4.at(y, x) != Disparity::kNone;
     return out;
   };
-  const auto whole = frames(1, false), one = frames(1, true), three = frames(3, true);
+  const auto whole = frames(1, PeopleFocus::kOff), one = frames(1, PeopleFocus::kOn),
+             three = frames(3, PeopleFocus::kWherePossible);
   ASSERT_EQ(one.size(), whole.size());
   ASSERT_EQ(three.size(), whole.size());
   for (std::size_t i = 0; i < whole.size(); ++i) {
-    if (i < 3 || i == FocusLine::kFirstWhole)
+    const bool all = i < FocusLine::kBehind || i == FocusLine::kFirstWhole;
+    EXPECT_EQ(one[i]->matched.empty(), all) << i;
+    EXPECT_TRUE(whole[i]->matched.empty());
+    if (all)
       EXPECT_EQ(known(*one[i]), known(*whole[i])) << i;
     else
       EXPECT_LT(known(*one[i]), known(*whole[i])) << i;
@@ -97,7 +102,7 @@ TEST(PipelineFocus, FollowsPeople) {
 
 TEST(PipelineFocus, RefusesWhatNeedsWholeFrames) {
   PipelineSetup setup = pipeline_setup();
-  setup.focus = true;
+  setup.focus = PeopleFocus::kOn;
   setup.tracker = "arm";
   const auto arm = Pipeline::open(std::make_unique<Clip>(), setup);
   ASSERT_FALSE(arm);
@@ -106,6 +111,29 @@ TEST(PipelineFocus, RefusesWhatNeedsWholeFrames) {
   const auto filled = Pipeline::open(std::make_unique<Clip>(), setup, std::make_unique<Walker>());
   ASSERT_FALSE(filled);
   EXPECT_NE(filled.error().what.find("fill holes"), std::string::npos) << filled.error().what;
+  setup.focus = PeopleFocus::kWherePossible;
+  const auto possible = Pipeline::open(std::make_unique<Clip>(), setup, std::make_unique<Walker>());
+  ASSERT_TRUE(possible) << possible.error().what;
+  EXPECT_FALSE(possible->header().focus);
+}
+
+// All pairs that may be on their way when people are forgotten are still matched around them; the next one is not.
+TEST(PipelineFocus, ForgetsPeople) {
+  for (const int threads : {1, 3}) {
+    PipelineSetup setup = pipeline_setup(threads, true);
+    setup.focus = PeopleFocus::kOn;
+    auto pipeline = Pipeline::open(std::make_unique<Clip>(), std::move(setup), std::make_unique<Walker>());
+    ASSERT_TRUE(pipeline) << pipeline.error().what;
+    constexpr std::uint64_t kForgotten = 5;
+    for (std::uint64_t i = 0; i <= kForgotten + FocusLine::kBehind + 2; ++i) {
+      ASSERT_TRUE(pipeline->next());
+      const std::uint64_t n = pipeline->frame()->sequence;
+      if (n == kForgotten) pipeline->forget();
+      if (n > kForgotten) {
+        EXPECT_EQ(pipeline->frame()->matched.empty(), n == kForgotten + FocusLine::kBehind + 1) << n;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -146,6 +146,21 @@ TEST_F(Track, ArmsByTheNamesOfTheirJoints) {
   EXPECT_EQ(people[1]["id"], 2);
 }
 
+TEST_F(Track, MatchesAroundPeopleUnlessWholeFramesAreWanted) {
+  const std::string people = "track left.mp4 right.mp4 --rig rig.json --engine simd --quiet ";
+  const auto has_focus = [&](const std::string& options) {
+    const Ended ended = run(people + options);
+    EXPECT_EQ(ended.exit, 0) << ended.err;
+    return nlohmann::json::parse(ended.out.substr(0, ended.out.find('\n'))).contains("focus");
+  };
+  EXPECT_TRUE(has_focus(""));
+  EXPECT_TRUE(has_focus("--focus"));
+  EXPECT_FALSE(has_focus("--whole"));
+  EXPECT_FALSE(has_focus("--mcap depth.mcap"));  // it holds depth
+  EXPECT_EQ(run(people + "--focus --whole").exit, kUsage);
+  EXPECT_NE(run(people + "--focus --matcher fine").err.find("cannot match around people alone"), std::string::npos);
+}
+
 TEST_F(Track, TimesOnlyWhenAsked) {
   const Ended ended = run("track left.mp4 right.mp4 --rig rig.json --stats" + std::string(kSelect));
   ASSERT_EQ(ended.exit, 0) << ended.err;
@@ -263,9 +278,11 @@ TEST_F(Track, BenchOfAClip) {
   ASSERT_EQ(table["track"].size(), 2u);
   for (const auto& track : table["track"]) EXPECT_GT(track["frames_per_s"], 0);
 
-  const Ended plain = run("bench --clip timed --repeat 1 --focus");
+  EXPECT_TRUE(table["focus"].get<bool>());
+  const Ended plain = run("bench --clip timed --repeat 1 --whole");
   EXPECT_EQ(plain.exit, 0) << plain.err;
-  for (const char* word : {"around people", "decode", "  semi_global", "track, 2 threads"})
+  EXPECT_EQ(plain.out.find("around people"), std::string::npos);
+  for (const char* word : {"decode", "  semi_global", "track, 2 threads"})
     EXPECT_NE(plain.out.find(word), std::string::npos) << word;
   EXPECT_EQ(run("bench --clip nowhere").exit, kInput);
   for (const char* of_pictures : {"--what frames", "--size 640x480", "--fine"})

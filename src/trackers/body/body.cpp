@@ -60,6 +60,11 @@ Vec3 Body::expected_trunk() const {
   return middle(middle(at(kLeftShoulder), at(kRightShoulder)), middle(at(kLeftHip), at(kRightHip)));
 }
 
+void Body::stretch_step(double times) {
+  pace_ = times * pace_;
+  for (const JointId id : kFreeJoints) states_[id].step = times * states_[id].step;
+}
+
 TurnedSquare Body::expected_region(const FrameView& frame) const {
   const Vec3 p = expected_trunk();
   const Vec2 now = frame.depth.geometry->project({p.x, p.y, std::max(p.z, kNear_m)});

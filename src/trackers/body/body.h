@@ -18,6 +18,8 @@ class Body {
   /// None where the frame shows no depth on the trunk, or a trunk that no person has.
   static std::optional<Body> start(const FrameView& frame, const SeenBody& seen);
 
+  /// The next frame comes `times` as long after the last one as that one came after the one before.
+  void stretch_step(double times);
   /// Where the trunk's middle is expected in the next frame, and its depth.
   Vec3 expected_trunk() const;
   /// Where to look for the body in the next frame after one that did not show it.

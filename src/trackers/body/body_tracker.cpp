@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/check.h"
 #include "core/clock.h"
@@ -57,6 +58,8 @@ class BodyTracker final : public Tracker {
     const body::FrameView* frame = nullptr;
     std::array<std::optional<std::size_t>, 2> hands = {};  // left, right: which of those looked at
   };
+  /// From the last frame to this one: by the frames' times a multiple of what the setup says, as frames may have been left out.
+  double time_since_last(const Frame& frame);
   /// Of people who overlap, takes the others out of the frame that each is looked for in.
   void uncover(const body::FrameView& frame);
   /// Finds the tracked person that each seen one is, the most alike first.
@@ -66,8 +69,8 @@ class BodyTracker final : public Tracker {
   void gather(const body::FrameView& frame, std::span<const SeenPerson> seen);
   /// Whether a body that nobody owns lies over one that somebody does: the same person, marked twice.
   bool is_of_another(const body::FrameView& frame, std::span<const SeenPerson> seen, std::size_t which) const;
-  /// Adds where to look for those who are not followed: who was missed, and who is new.
-  void look_elsewhere(const body::FrameView& frame);
+  /// Adds where to look for those who are not followed: who was missed, and in a frame that was matched as a whole who is new.
+  void look_elsewhere(const body::FrameView& frame, bool whole);
   void look_at_hands();
   /// Drops those who are gone, and who was taken for somebody by mistake: of a person some joints are seen in each of its first
   /// ten frames.
@@ -99,7 +102,9 @@ class BodyTracker final : public Tracker {
   StageTimer timer_;
   StageTimer::Times times_{};
   std::uint32_t next_id_ = 1;
-  std::int64_t frame_ = 0;
+  std::int64_t frame_ = 0, next_search_ = 0;  // for those who are new
+  TimeNs last_ns_ = 0;                        // the time of the last frame,
+  double last_step_s_ = 0;                    // and that from the one before to it
 };
 
 Result<void> BodyTracker::prepare(const TrackerSetup& setup) {
@@ -140,7 +145,8 @@ void BodyTracker::reset() {
     finder_ = std::make_unique<PeopleFinder>(
         *detector_, PeopleFinder::Options{.hands = false, .most = kMostPeople, .search_every = kSearchEvery});
   next_id_ = 1;
-  frame_ = 0;
+  frame_ = next_search_ = 0;
+  last_step_s_ = setup_.frame_s;
 }
 
 void BodyTracker::match(const body::FrameView& frame, std::span<const SeenPerson> seen) {
@@ -245,12 +251,12 @@ void BodyTracker::gather(const body::FrameView& frame, std::span<const SeenPerso
   std::ranges::sort(sights_, {}, [](const Sight& s) { return std::pair(s.who->body.expected_trunk().z, s.who->id); });
 }
 
-void BodyTracker::look_elsewhere(const body::FrameView& frame) {
+void BodyTracker::look_elsewhere(const body::FrameView& frame, bool whole) {
   regions_.clear();
   for (const Tracked& each : tracked_)
     if (!each.matched && each.uncover == nullptr) regions_.push_back(each.body.expected_region(frame));
-  const bool begins = frame_ < kSearchEvery / 2;
-  if ((!begins && frame_ % kSearchEvery != kSearchEvery / 2) || tracked_.size() == kMostPeople) return;
+  if (!whole || frame_ < next_search_ || tracked_.size() == kMostPeople) return;
+  next_search_ = frame_ + (frame_ < kSearchEvery / 2 ? 1 : kSearchEvery);
   constexpr int kStillThere = 3;  // frames
   trunks_.clear();
   for (const Tracked& each : tracked_)
@@ -273,15 +279,26 @@ void BodyTracker::look_at_hands() {
   detector_->hands(looks_, hands_);
 }
 
+double BodyTracker::time_since_last(const Frame& frame) {
+  constexpr double kMost_s = 0.99;
+  const double frames = frame_ == 0 ? 1 : std::round(static_cast<double>(frame.t_ns - last_ns_) * 1e-9 / setup_.frame_s);
+  const double step_s = setup_.frame_s * std::clamp(frames, 1.0, std::max(std::floor(kMost_s / setup_.frame_s), 1.0));
+  if (step_s != last_step_s_ && frame_ > 1)  // one frame shows no speed
+    for (Tracked& each : tracked_) each.body.stretch_step(step_s / last_step_s_);
+  last_ns_ = frame.t_ns;
+  last_step_s_ = step_s;
+  return step_s;
+}
+
 std::span<const Person> BodyTracker::track(const Frame& frame) {
   DUO_CHECK(finder_ != nullptr);
   timer_.start(times_, setup_.time_stages);
   const View<const Rgb8> picture = margin_.fill(frame.color);
   const body::FrameView view{
-      {frame.disparity.d_q4, &setup_.rectified}, picture, setup_.frame_s, setup_.body_model, {}, margin_.mask()};
+      {frame.disparity.d_q4, &setup_.rectified}, picture, time_since_last(frame), setup_.body_model, {}, margin_.mask()};
   uncover(view);
   timer_.stage("fit");
-  look_elsewhere(view);
+  look_elsewhere(view, frame.matched.empty());
   const std::span<const SeenPerson> seen = finder_->follow(picture, regions_);
   timer_.stage("bodies");
   match(view, seen);

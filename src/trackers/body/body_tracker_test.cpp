@@ -64,6 +64,30 @@ TEST(BodyTracker, FingersOfSmallHandsAreLost) {
   for (std::size_t j = kBodyJointIds; j < kJointIds; ++j) EXPECT_EQ(people[0].joints[j].state, JointState::kLost) << j;
 }
 
+// Every third frame at the source's rate is every frame at a third of it.
+TEST(BodyTracker, KnowsTheTimeOfFramesThatWereLeftOut) {
+  constexpr double kFrame_s = 1.0 / 30;
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto left_out = make_body_tracker(), all = make_body_tracker();
+  for (const auto& [tracker, frame_s] : {std::pair(left_out.get(), kFrame_s), std::pair(all.get(), 3 * kFrame_s)})
+    ASSERT_TRUE(tracker->prepare(
+        {.rig = person.rig, .rectified = person.rectified, .frame_s = frame_s, .body_model = BodyModel::kLite}));
+  double fastest_m_s = 0;
+  for (int i = 0; i < kFrames; i += 3) {
+    Frame frame = copy_of(*person.frames[static_cast<std::size_t>(i)]);
+    frame.t_ns = static_cast<TimeNs>(1e9 * kFrame_s * i);
+    const auto got = left_out->track(frame), want = all->track(frame);
+    ASSERT_TRUE(got.size() == 1 && want.size() == 1) << i;
+    for (std::size_t j = 0; j < got[0].count(); ++j) {
+      EXPECT_NEAR(norm(got[0].joints[j].p_in_rig_m - want[0].joints[j].p_in_rig_m), 0, 1e-6) << i << " " << j;
+      if (i == 0) continue;  // one frame shows no speed
+      EXPECT_NEAR(norm(got[0].joints[j].v_in_rig_m_s - want[0].joints[j].v_in_rig_m_s), 0, 1e-5) << i << " " << j;
+      fastest_m_s = std::max(fastest_m_s, norm(want[0].joints[j].v_in_rig_m_s));
+    }
+  }
+  EXPECT_GT(fastest_m_s, 0.1);
+}
+
 TEST(BodyTracker, OneAndTwoThreadsGiveTheSameBits) {
   const RenderedPerson& person = RenderedPerson::get();
   const auto one = body_tracker(person.rig, person.rectified, 1), two = body_tracker(person.rig, person.rectified, 2);
