@@ -9,6 +9,7 @@ namespace duo {
 SgmParams FineParams::sgm() const {
   SgmParams out;
   out.soften = soften, out.clear = clear, out.speckle = speckle;
+  out.refine = 0;  // planes are what is refined
   return out;
 }
 

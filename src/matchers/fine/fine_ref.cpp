@@ -27,12 +27,13 @@ void Fine::match(const GrayPair& pair, const Match& out, StageTimer& timer) {
   check_planes(pair, maps_.left, maps_.mirrored, params_.tolerance, checked);
   ref::remove_speckle(checked, SgmParams{}.speckle_step_q4, params_.speckle);
   if (params_.smooth != 0) ref::color_median({checked, pair.left_color, {}, kFineMedian}, out.d_q4);
+  stages.end("check_planes", 9);
   if (!sgm_.clear()) {
     const SemiGlobal compared = sgm_.compared();
     for (int y = 0; y < out.d_q4.height(); ++y) std::copy_n(out.d_q4.row(y), out.d_q4.width(), maps_.unfilled.row(y));
     ref::lucas_kanade({compared.left.value[0], compared.right.value[0], maps_.unfilled, max_disparity_}, out.d_q4);
   }
-  stages.end("check_planes", 10);
+  stages.end("lucas_kanade", 1);
   if (out.filled.empty()) return;
   for (int y = 0; y < out.d_q4.height(); ++y) std::copy_n(out.d_q4.row(y), out.d_q4.width(), maps_.whole.d_q4.row(y));
   fill(pair);

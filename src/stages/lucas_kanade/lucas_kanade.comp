@@ -14,9 +14,8 @@ layout(std430, binding = 4) writeonly buffer Dst { uint16_t dst[]; };
 layout(push_constant) uniform Push { LucasKanadePush p; };
 
 const int kNone = 0xFFFF;
-// Those of LucasKanade.
-const int kRadius = 12, kMostDifference = 8, kMost_q4 = 8;
-const int kTileWidth = kGroupWidth + 2 * kRadius, kTileHeight = kGroupHeight / 2 + kRadius;  // of even rows
+const int kRadius = kLucasKanadeRadius;
+const int kTileWidth = kGroupWidth + 2 * kRadius, kTileHeight = kGroupHeight / 2 + kRadius;  // of pairs of rows
 shared ivec2 tile[kTileHeight * kTileWidth];  // pull, weight
 
 int index(Plane plane, ivec2 at) { return plane.offset + at.y * plane.stride + at.x; }
@@ -30,12 +29,11 @@ ivec2 tap(ivec2 at) {
   const int before = right_at(r - 1, at.y), here = right_at(r, at.y), after = right_at(r + 1, at.y),
             beyond = right_at(r + 2, at.y);
   const int e = 16 * left_at(at) - (here * (16 - f) + after * f);
-  if (abs(e) >= 16 * kMostDifference) return ivec2(0);
+  if (abs(e) >= 16 * kLucasKanadeMostDifference) return ivec2(0);
   const int slope_q6 =
       16 * (left_at(at + ivec2(1, 0)) - left_at(at - ivec2(1, 0))) + (after - before) * (16 - f) + (beyond - here) * f;
-  const int g = (slope_q6 + 8) >> 4, square = g * g, most = square + 64;
-  const int pull = (4096 * abs(g) + most / 2) / most, weight = (683 * square + most / 2) / most + 34;
-  return ivec2((g < 0 ? -e : e) * pull, weight);
+  const int g_q2 = (slope_q6 + 8) >> 4;
+  return ivec2((g_q2 < 0 ? -e : e) * lucas_kanade_pull(abs(g_q2)), lucas_kanade_weight(abs(g_q2)));
 }
 
 int step_q4(int centre) {
@@ -43,14 +41,14 @@ int step_q4(int centre) {
   for (int v = -kRadius / 2; v <= kRadius / 2; ++v)
     for (int u = -kRadius; u <= kRadius; ++u) sum += tile[centre + v * kTileWidth + u];
   if (sum.y == 0) return 0;
-  const int size = min(kMost_q4, (2 * abs(sum.x) / sum.y + 1) / 2);
+  const int size = min(kLucasKanadeMost_q4, (2 * abs(sum.x) / sum.y + 1) / 2);
   return sum.x > 0 ? -size : size;
 }
 
 void main() {
   const ivec2 corner = ivec2(gl_WorkGroupID.xy) * ivec2(kGroupWidth, kGroupHeight) - kRadius;
   for (int i = int(gl_LocalInvocationIndex); i < kTileWidth * kTileHeight; i += kGroupWidth * kGroupHeight)
-    tile[i] = tap(corner + ivec2(i % kTileWidth, i / kTileWidth * 2));
+    tile[i] = tap(corner + ivec2(i % kTileWidth, i / kTileWidth * 2 + (i % kTileWidth & 1)));
   barrier();
 
   const ivec2 at = ivec2(gl_GlobalInvocationID.xy);

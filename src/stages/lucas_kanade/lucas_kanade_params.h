@@ -1,9 +1,33 @@
-// Included by C++ and by GLSL.
+// Included by C++ and by GLSL: the numbers of duo::LucasKanade, and what a gradient counts for.
 #ifndef DUO_LUCAS_KANADE_PARAMS_H
 #define DUO_LUCAS_KANADE_PARAMS_H
 #include "vulkan/plane.h"
 #ifdef __cplusplus
-namespace duo::vk {
+#define DUO_INLINE constexpr
+namespace duo {
+#else
+#define DUO_INLINE
+#endif
+
+const int kLucasKanadeRadius = 12;         // columns and rows of the window to each side
+const int kLucasKanadeMostDifference = 8;  // gray levels
+const int kLucasKanadeMost_q4 = 8;         // 1/16 px
+
+// g w in 1/2^14, of g >= 0 in 1/4: at most 256, so that with e of 1/16 a tap fits 16 bits.
+DUO_INLINE int lucas_kanade_pull(int g_q2) {
+  const int most = g_q2 * g_q2 + 64;
+  return (4096 * g_q2 + most / 2) / most;
+}
+
+// g^2 w + 1/20 in 1/2 of 1/1024: so the quotient of the sums is two steps in 1/16 px.
+DUO_INLINE int lucas_kanade_weight(int g_q2) {
+  const int square = g_q2 * g_q2, most = square + 64;
+  return (512 * square + most / 2) / most + 26;
+}
+
+#undef DUO_INLINE
+#ifdef __cplusplus
+namespace vk {
 #endif
 
 struct LucasKanadePush {
@@ -12,6 +36,7 @@ struct LucasKanadePush {
 };
 
 #ifdef __cplusplus
-}  // namespace duo::vk
+}  // namespace vk
+}  // namespace duo
 #endif
 #endif

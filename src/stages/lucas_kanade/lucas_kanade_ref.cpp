@@ -36,11 +36,9 @@ void lucas_kanade(const LucasKanade& in, View<std::uint16_t> dst) {
       dst.at(y, x) = in.d_q4.at(y, x);
       if (dst.at(y, x) == Disparity::kNone) continue;
       LucasKanadeSums sums;
-      for (int v = y / 2 * 2 - LucasKanade::kRadius; v <= y / 2 * 2 + LucasKanade::kRadius; v += 2) {
-        if (v < 0 || v >= size.height) continue;
+      for (int pair = y / 2 * 2 - LucasKanade::kRadius; pair <= y / 2 * 2 + LucasKanade::kRadius; pair += 2)
         for (int u = std::max(x - LucasKanade::kRadius, 0); u <= std::min(x + LucasKanade::kRadius, size.width - 1); ++u)
-          sums.add(lucas_kanade_tap(in, v, u));
-      }
+          if (const int v = pair + u % 2; v >= 0 && v < size.height) sums.add(lucas_kanade_tap(in, v, u));
       dst.at(y, x) = static_cast<std::uint16_t>(std::clamp(dst.at(y, x) + sums.step_q4(), 0, 16 * (in.max_disparity - 1)));
     }
 }

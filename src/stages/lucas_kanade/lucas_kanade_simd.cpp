@@ -1,5 +1,6 @@
-// Lanes are pixels of a row. Sums over the window's rows are kept for each column: the row that comes in is added, the one that
-// goes out taken off. Two rows share them. Of the right view the four bytes that a tap needs come with one gather.
+// Lanes are columns of a pair of rows: odd ones look at its second row. Sums over the window's pairs are kept for each column:
+// the pair that comes in is added, the one that goes out taken off. Of the right view the four bytes that a tap needs come with
+// one gather.
 
 #include <algorithm>
 #include <array>
@@ -75,14 +76,23 @@ class Gradients {
     const hn::Rebind<std::uint16_t, D32> du16;
     const hn::Rebind<std::int16_t, D32> d16;
     const auto constant = [&](int v) HWY_ATTR { return hn::Set(d, v); };
-    const auto left = [&](int at) HWY_ATTR { return hn::PromoteTo(d, hn::LoadU(d8, in_.left.row(y) + at)); };
-    const auto disparity = hn::PromoteTo(d, hn::LoadU(du16, in_.d_q4.row(y) + x));
-    const auto at_q4 = hn::Sub(hn::ShiftLeft<4>(hn::Iota(d, x)), disparity);
+    const int second = std::min(y + 1, h_ - 1);  // what it reads in its own place does not count, see below
+    const auto column = hn::Iota(d, x);
+    const auto odd = hn::Ne(hn::And(column, constant(1)), hn::Zero(d));
+    const auto left = [&](int at) HWY_ATTR {
+      return hn::IfThenElse(odd, hn::PromoteTo(d, hn::LoadU(d8, in_.left.row(second) + at)),
+                            hn::PromoteTo(d, hn::LoadU(d8, in_.left.row(y) + at)));
+    };
+    const auto disparity = hn::IfThenElse(odd, hn::PromoteTo(d, hn::LoadU(du16, in_.d_q4.row(second) + x)),
+                                          hn::PromoteTo(d, hn::LoadU(du16, in_.d_q4.row(y) + x)));
+    const auto at_q4 = hn::Sub(hn::ShiftLeft<4>(column), disparity);
     const auto r = hn::ShiftRight<4>(at_q4), f = hn::And(at_q4, constant(15)), rest = hn::Sub(constant(16), f);
     const auto known = hn::Ne(disparity, constant(std::int32_t{Disparity::kNone}));
-    const auto inside = hn::And(known, hn::And(hn::Gt(r, constant(0)), hn::Lt(r, constant(w_ - 2))));
+    const auto there = hn::Or(hn::Not(odd), hn::Gt(constant(h_), constant(y + 1)));
+    const auto inside = hn::And(hn::And(known, there), hn::And(hn::Gt(r, constant(0)), hn::Lt(r, constant(w_ - 2))));
+    const auto row = hn::IfThenElseZero(odd, constant(static_cast<int>(in_.right.row(second) - in_.right.row(y))));
     const auto four = hn::GatherOffset(d, reinterpret_cast<const std::int32_t*>(in_.right.row(y) - 1),
-                                       hn::IfThenElse(inside, r, constant(1)));
+                                       hn::IfThenElse(inside, hn::Add(row, r), constant(1)));
     const auto byte = constant(255);
     const auto before = hn::And(four, byte), here = hn::And(hn::ShiftRight<8>(four), byte),
                after = hn::And(hn::ShiftRight<16>(four), byte), beyond = hn::And(hn::ShiftRight<24>(four), byte);

@@ -15,16 +15,17 @@ double zigzag(double x) {
   return 16 * std::min(in_period, 8 - in_period);
 }
 
-/// One row of it, which the left view sees `true_px` further right than the right view.
+/// Two rows of it, which the left view sees `true_px` further right than the right view.
 struct ZigzagPair {
-  Image<std::uint8_t> left{{14, 1}}, right{{14, 1}};
-  Image<std::uint16_t> d_q4{{14, 1}};
+  Image<std::uint8_t> left{{14, 2}}, right{{14, 2}};
+  Image<std::uint16_t> d_q4{{14, 2}};
   ZigzagPair(double true_px, int d) {
-    for (int x = 0; x < 14; ++x) {
-      left.at(0, x) = static_cast<std::uint8_t>(std::lround(zigzag(x - true_px)));
-      right.at(0, x) = static_cast<std::uint8_t>(std::lround(zigzag(x)));
-      d_q4.at(0, x) = static_cast<std::uint16_t>(d);
-    }
+    for (const int y : {0, 1})
+      for (int x = 0; x < 14; ++x) {
+        left.at(y, x) = static_cast<std::uint8_t>(std::lround(zigzag(x - true_px)));
+        right.at(y, x) = static_cast<std::uint8_t>(std::lround(zigzag(x)));
+        d_q4.at(y, x) = static_cast<std::uint16_t>(d);
+      }
   }
   Image<std::uint16_t> stepped(int max_disparity = 16) const {
     Image<std::uint16_t> out(d_q4.size());
@@ -33,24 +34,24 @@ struct ZigzagPair {
   }
 };
 
-// By hand: 4096 * 64 / (64 * 64 + 64) = 63.02, 683 * 64 * 64 / (64 * 64 + 64) = 672.5 down; 4096 * 8 / 128 = 256.
+// By hand: 4096 * 64 / (64 * 64 + 64) = 63.02, 512 * 64 * 64 / (64 * 64 + 64) = 504.1; 4096 * 8 / 128 = 256.
 TEST(LucasKanade, GradientsCountAlmostAlike) {
   EXPECT_EQ(lucas_kanade_pull(0), 0);
-  EXPECT_EQ(lucas_kanade_weight(0), 34);
+  EXPECT_EQ(lucas_kanade_weight(0), 26);
   EXPECT_EQ(lucas_kanade_pull(8), 256);
-  EXPECT_EQ(lucas_kanade_weight(8), 342 + 34);
+  EXPECT_EQ(lucas_kanade_weight(8), 256 + 26);
   EXPECT_EQ(lucas_kanade_pull(64), 63);
-  EXPECT_EQ(lucas_kanade_weight(64), 672 + 34);
+  EXPECT_EQ(lucas_kanade_weight(64), 504 + 26);
 }
 
 // By hand: column 8, whose taps are the columns 3 .. 12. Going up e is -64, going down 64; g is 64, where the left view turns
-// 56, where both do 8. So of ten taps five have -64 * 63 and 706; three -64 * 72 and 703; two -64 * 256 and 376: in all
-// -66752 and 6391, and (2 * 66752 / 6391 + 1) / 2 = 10 sixteenths, of which 8 are taken: the turns say most.
+// 56, where both do 8. So of ten taps five have -64 * 63 and 530; three -64 * 72 and 528; two -64 * 256 and 282: in all
+// -66752 and 4798, and (2 * 66752 / 4798 + 1) / 2 = 14 sixteenths, of which 8 are taken: the turns say most.
 TEST(LucasKanade, StepsToWhereBothViewsAreAlike) {
   const ZigzagPair pair(2.25, 32);
   const LucasKanade in{pair.left, pair.right, pair.d_q4, 16};
   const int pull[] = {-64 * 72, -64 * 63, -64 * 63, -64 * 256, -64 * 72, -64 * 63, -64 * 63, -64 * 256, -64 * 72, -64 * 63};
-  const int weight[] = {703, 706, 706, 376, 703, 706, 706, 376, 703, 706};
+  const int weight[] = {528, 530, 530, 282, 528, 530, 530, 282, 528, 530};
   for (int i = 0; i < 10; ++i) {
     const LucasKanadeSums tap = ref::lucas_kanade_tap(in, 0, 3 + i);
     EXPECT_EQ(tap.pull, pull[i]) << i;
@@ -68,14 +69,15 @@ TEST(LucasKanade, IsHeld) {
   EXPECT_EQ(ZigzagPair(2.25, 32).stepped(3).at(0, 8), 32);
 }
 
-// A shaded surface without any texture tells its place, too: -4 levels on a slope of 16 are a quarter of a pixel, and one and a
-// half times that: (2 * 4032 / 706 + 1) / 2 = 6 sixteenths.
+// A shaded surface without any texture tells its place, too: -2 levels on a slope of 16 are an eighth of a pixel, and twice
+// that: (2 * 32 * 63 / 530 + 1) / 2 = 4 sixteenths.
 TEST(LucasKanade, ShadingTellsThePlace) {
   ZigzagPair slope(2, 32);
-  for (int x = 0; x < 14; ++x)
-    slope.right.at(0, x) = static_cast<std::uint8_t>(16 * x),
-                      slope.left.at(0, x) = static_cast<std::uint8_t>(std::max(16 * x - 36, 0));
-  EXPECT_EQ(slope.stepped().at(0, 8), 38);
+  for (const int y : {0, 1})
+    for (int x = 0; x < 14; ++x)
+      slope.right.at(y, x) = static_cast<std::uint8_t>(16 * x),
+                        slope.left.at(y, x) = static_cast<std::uint8_t>(std::max(16 * x - 34, 0));
+  EXPECT_EQ(slope.stepped().at(0, 8), 36);
 }
 
 TEST(LucasKanade, WhatSeesSomethingElseDoesNotCount) {
@@ -89,6 +91,19 @@ TEST(LucasKanade, WhatSeesSomethingElseDoesNotCount) {
   // Places whose neighbours lie outside either picture.
   for (const int x : {0, 1, 2, 13}) EXPECT_EQ(ref::lucas_kanade_tap(in, 0, x).weight, 0) << x;
   EXPECT_GT(ref::lucas_kanade_tap(in, 0, 3).weight, 0);
+}
+
+// By hand: a gray value at column 4 of the second row is a tap of neither row; at column 5 of it, of both. Of the first row it
+// is the other way round.
+TEST(LucasKanade, TapsAreEachSecondPixel) {
+  const auto steps = [](int y, int x) {
+    ZigzagPair pair(2, 32);
+    pair.left.at(y, x) += 4;  // a tap here, but also in the gradients of both beside it, whose e is 0
+    return pair.stepped();
+  };
+  const Image<std::uint16_t> still = ZigzagPair(2, 32).stepped();
+  for (const int y : {0, 1})
+    for (const int x : {4, 5}) EXPECT_EQ(steps(y, x).at(0, 6) == still.at(0, 6), (y + x) % 2 != 0) << y << " " << x;
 }
 
 /// Pictures and disparities of every kind, with holes among these.
