@@ -6,6 +6,7 @@
 #include "core/clock.h"
 #include "core/pool.h"
 #include "matchers/match.h"
+#include "matchers/sgm/keep_confidence_params.h"
 #include "matchers/sgm/sgm_params.h"
 #include "stages/balance/balance.h"
 #include "stages/lucas_kanade/lucas_kanade.h"
@@ -27,8 +28,10 @@ struct SgmMaps {
 /// Whether a pair looks clear by what was measured of it, or by what the parameters ask for.
 bool looks_clear(const SgmParams& params, int noise_q4, int blur_q4);
 
-/// Margins become confidences: at least 1 where there is a disparity, 0 elsewhere.
-void keep_confidence(View<const std::uint16_t> d_q4, View<std::uint8_t> confidence);
+/// Row y of margins becomes one of confidences: confidence_of() by what disparities differ in 7x7 pixels, holes aside; 0 where
+/// there is no disparity. A margin says which surfaces are there, and not on which of them a pixel beside a step lies.
+/// `columns`: scratch, two rows as wide as the picture.
+void keep_confidence(View<const std::uint16_t> d_q4, int y, View<std::uint16_t> columns, View<std::uint8_t> confidence);
 
 namespace ref {
 
@@ -36,7 +39,8 @@ class Sgm {
  public:
   Sgm(const SgmParams& params, const MatchSetup& setup);
   /// Disparity of the left picture in 1/16 px. Confidence: the margin by which the winner's cost beats all disparities beside
-  /// its neighbours. Sure pixels are right more often (tested), how often depends on the scene.
+  /// its neighbours, less where the disparity changes (keep_confidence()). Sure pixels are right more often (tested), how often
+  /// depends on the scene.
   ///
   /// Shape   pair as set up, out the same size
   /// Errors  none, and no allocation but in the reference's stages
@@ -47,14 +51,17 @@ class Sgm {
   Measured measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear = {});
   void match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer);
   /// Of the last pair: what was compared, and whether as clear pictures.
-  SemiGlobal compared() const { return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global()}; }
+  SemiGlobal compared() const {
+    return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global(clear_, noise_q4_)};
+  }
   bool clear() const { return clear_; }
 
  private:
   SgmParams params_;
   int max_disparity_;
   std::shared_ptr<ClearStream> stream_;
-  bool clear_ = false;
+  bool clear_ = false;  // of the last pair, as its noise
+  int noise_q4_ = 0;
   SgmMaps maps_;
   PlaneImages left_, right_;
 };
@@ -70,7 +77,9 @@ class Sgm {
   void match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows = {}, std::optional<bool> clear = {});
   Measured measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear = {});
   void match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer, RowBand rows = {});
-  SemiGlobal compared() const { return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global()}; }
+  SemiGlobal compared() const {
+    return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global(clear_, noise_q4_)};
+  }
   bool clear() const { return clear_; }
 
  private:
@@ -78,7 +87,8 @@ class Sgm {
   SgmParams params_;
   int max_disparity_;
   std::shared_ptr<ClearStream> stream_;
-  bool clear_ = false;
+  bool clear_ = false;  // of the last pair, as its noise
+  int noise_q4_ = 0;
   SgmMaps maps_;
   PlaneImages left_, right_;
   BalanceScratch balance_scratch_;
@@ -86,6 +96,7 @@ class Sgm {
   SpeckleScratch speckle_scratch_;
   WeightedMedianScratch smooth_scratch_;
   LucasKanadeScratch refine_scratch_;
+  Image<std::uint16_t> columns_;  // two rows a thread: keep_confidence()
 };
 
 }  // namespace simd

@@ -36,8 +36,8 @@ Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<boo
 }
 
 void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer) {
-  const int noise_q4 = params_.soften != 0 ? measured.noise_q4 : 0;
-  clear_ = measured.clear;
+  clear_ = measured.clear, noise_q4_ = measured.noise_q4;
+  const int noise_q4 = params_.soften != 0 ? counted_noise_q4(clear_, noise_q4_) : 0;
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
     if (noise_q4 > 0) ref::bilateral(gray, bilateral_range(noise_q4), maps_.softened);
     timer.stage("bilateral");
@@ -46,7 +46,7 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const M
   };
   planes(pair.left, pair.left_inside, left_);
   planes(pair.right, pair.right_inside, right_);
-  const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, params_.semi_global()};
+  const SemiGlobal in = compared();
   ref::semi_global(in, {maps_.left_winner, maps_.right_winner, maps_.fine, out.confidence});
   timer.stage("semi_global");
   // What follows the check writes to another image than it reads: the check stays in the one from which it ends in d_q4.
@@ -62,8 +62,10 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const M
   if (params_.smooth != 0) ref::weighted_median({checked, in.left.value[0]}, smoothed);
   timer.stage("weighted_median");
   if (refine) ref::lucas_kanade({in.left.value[0], in.right.value[0], smoothed, max_disparity_}, out.d_q4);
-  if (!out.confidence.empty()) keep_confidence(out.d_q4, out.confidence);
   timer.stage("lucas_kanade");
+  Image<std::uint16_t> columns({out.d_q4.width(), 2});
+  for (int y = 0; y < out.confidence.height(); ++y) keep_confidence(out.d_q4, y, columns, out.confidence);
+  timer.stage("keep_confidence");
 }
 
 }  // namespace duo::ref

@@ -22,10 +22,11 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
             PlaneImages::kPadRight),  // as little as its stage takes: only the right view is looked up beside itself
       right_(setup.size, SemiGlobalScratch::padding(setup.max_disparity)),
       balance_scratch_(setup.size),
-      scratch_(setup.size, setup.max_disparity, params.semi_global(), pool.threads()),
+      scratch_(setup.size, setup.max_disparity, params.semi_global(false, 0), pool.threads()),
       speckle_scratch_(setup.size),
       smooth_scratch_(setup.size),
-      refine_scratch_(setup.size, pool.most()) {}
+      refine_scratch_(setup.size, pool.most()),
+      columns_({setup.size.width, 2 * pool.most()}) {}
 
 void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows, std::optional<bool> clear) {
   const Measured measured = measure(pair, timer, clear);
@@ -46,17 +47,19 @@ Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<boo
 }
 
 void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer, RowBand rows) {
-  const int noise_q4 = params_.soften != 0 ? measured.noise_q4 : 0;
-  clear_ = measured.clear;
-  // What the result depends on: taps of the last step and of the median; islands, which are smaller than `speckle` pixels where
-  // they matter; paths from above, and with paths from below the whole picture.
+  clear_ = measured.clear, noise_q4_ = measured.noise_q4;
+  const int noise_q4 = params_.soften != 0 ? counted_noise_q4(clear_, noise_q4_) : 0;
+  // What the result depends on: disparities around a confidence; taps of the last step and of the median; islands, which are
+  // smaller than `speckle` pixels where they matter; paths from above, and with paths from below the whole picture.
   const int h = pair.size().height;
-  rows = rows.within(h);
+  const RowBand wanted = rows.within(h);
+  rows = out.confidence.empty() ? wanted : wanted.grown(kConfidenceReach, h);
   const bool refine = params_.refine != 0 && !clear_;
   const RowBand smoothed_rows = refine ? rows.grown(LucasKanade::kRows, h) : rows;
   const RowBand checked_rows = params_.smooth != 0 ? smoothed_rows.grown(WeightedMedian::kRadius, h) : smoothed_rows;
   const RowBand joined = checked_rows.grown(params_.speckle, h);
-  const int plane_rows = params_.semi_global().upward ? h : joined.end;
+  const SemiGlobalParams semi_global = params_.semi_global(clear_, noise_q4_);
+  const int plane_rows = semi_global.upward ? h : joined.end;
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
     if (noise_q4 > 0) simd::bilateral(pool_, gray, bilateral_range(noise_q4), maps_.softened);
     timer.stage("bilateral");
@@ -66,7 +69,7 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const M
   };
   planes(pair.left, pair.left_inside, left_);
   planes(pair.right, pair.right_inside, right_);
-  const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, params_.semi_global(), joined};
+  const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, semi_global, joined};
   simd::semi_global(pool_, in, scratch_, {maps_.left_winner, maps_.right_winner, maps_.fine, out.confidence});
   timer.stage("semi_global");
   // What follows the check writes to another image than it reads: the check stays in the one from which it ends in d_q4.
@@ -83,10 +86,18 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const M
   timer.stage("weighted_median");
   if (refine)
     simd::lucas_kanade(pool_, {in.left.value[0], in.right.value[0], smoothed, max_disparity_, rows}, refine_scratch_, out.d_q4);
-  for (int y = 0; y < h; ++y)
-    if (y < rows.begin || y >= rows.end) std::fill_n(out.d_q4.row(y), out.d_q4.width(), Disparity::kNone);
-  if (!out.confidence.empty()) keep_confidence(out.d_q4, out.confidence);
   timer.stage("lucas_kanade");
+  if (!out.confidence.empty())
+    pool_.rows(wanted.count(), [&](int begin, int end, int part) {
+      const View<std::uint16_t> columns = columns_.view().crop(2 * part, 0, {columns_.width(), 2});
+      for (int y = wanted.begin + begin; y < wanted.begin + end; ++y) keep_confidence(out.d_q4, y, columns, out.confidence);
+    });
+  for (int y = 0; y < h; ++y) {
+    if (y >= wanted.begin && y < wanted.end) continue;
+    std::fill_n(out.d_q4.row(y), out.d_q4.width(), Disparity::kNone);
+    if (!out.confidence.empty()) std::fill_n(out.confidence.row(y), out.confidence.width(), std::uint8_t{0});
+  }
+  timer.stage("keep_confidence");
 }
 
 }  // namespace duo::simd

@@ -52,6 +52,21 @@ void expect_engines_agree(Size size, int max_disparity, int paths, bool masked, 
   });
 }
 
+// By hand: of 100, where nothing changes 100; beside a step of a pixel 1600 / 32 = 50; beside one of five pixels, of which
+// three count, 1600 / 64 = 25. Three columns away a step still counts, four away not; holes are passed over, and have 0.
+TEST(Sgm, ConfidenceIsLessBesideSteps) {
+  EXPECT_EQ(confidence_of(100, 0), 100);
+  EXPECT_EQ(confidence_of(0, 0), 1);
+  Image<std::uint16_t> d_q4 = test::constant<std::uint16_t>({12, 1}, 32);
+  d_q4.at(0, 4) = 48, d_q4.at(0, 10) = 112;
+  for (const int hole : {7, 8}) d_q4.at(0, hole) = Disparity::kNone;
+  Image<std::uint8_t> confidence = test::constant<std::uint8_t>(d_q4.size(), 100);
+  Image<std::uint16_t> columns({12, 2});
+  keep_confidence(d_q4, 0, columns, confidence);
+  const int want[] = {100, 50, 50, 50, 50, 50, 50, 0, 0, 25, 25, 25};
+  for (int x = 0; x < 12; ++x) EXPECT_EQ(confidence.at(0, x), want[x]) << x;
+}
+
 // With paths from below there is a volume of a byte for each pixel and disparity; all else together is half of that at most.
 TEST(Sgm, MemoryIsOneAndAHalfBytesACellAtMost) {
   for (const Size size : {Size{640, 480}, Size{1280, 720}}) {
