@@ -19,9 +19,7 @@ inline Rectified geometry() {
   return out;
 }
 
-inline std::uint16_t q4_at(double z_m) {
-  return static_cast<std::uint16_t>(std::lround(16 * (40 / z_m - DepthView::kShort_px)));
-}
+inline std::uint16_t q4_at(double z_m) { return static_cast<std::uint16_t>(std::lround(16 * 40 / z_m)); }
 
 struct Map {
   Rectified geometry_ = geometry();
