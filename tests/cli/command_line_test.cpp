@@ -245,7 +245,7 @@ TEST_F(CommandLine, SignalsLeaveWholeFrames) {
       "manual -o work/man"};
   const char* rounds = std::getenv("DUOPTIC_SIGNALS");
   const int times = rounds != nullptr ? std::atoi(rounds) : 1;
-  if (times > 1) calls.insert(calls.end(), {"demo -o work/demo", "bench", "cameras", "devices"});
+  if (times > 1) calls.insert(calls.end(), {"demo -o work/demo", "bench --size 640x480 --repeat 1", "cameras", "devices"});
   ASSERT_EQ(run("record " + pair + rig + "-o kept.mkv --force --quiet").exit, 0);
   unsigned random = 7;
   for (const std::string& call : calls) {
