@@ -30,7 +30,7 @@ void TrackingOptions::add_to(CLI::App& app) {
       "both hands in every frame, not in turn");
   app.add_flag_callback(
       "--focus", [this] { focus = PeopleFocus::kOn; },
-      "Match around people alone, and every 16th frame as a whole: a quarter to a half of the CPU time less, joints like "
+      "Match around people alone, and every 16th frame as a whole: a seventh to a quarter of the CPU time less, joints like "
       "those\n"
       "of whole frames but not to the bit. Of the tracker body; the CPU makes the frames. What track does by itself where the\n"
       "CPU makes the frames and no output holds depth");
