@@ -34,26 +34,13 @@ void pad_row(const std::uint16_t* d_q4, const std::uint8_t* gray, int w, std::in
   }
 }
 
-using D = hn::CappedTag<std::int16_t, kMaxLanes>;
-using DU = hn::RebindToUnsigned<D>;
-using V = hn::Vec<D>;
-using VU = hn::Vec<DU>;
-
-// Where a multiplication adds pairs of bytes, two taps are compared and weighed at once.
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_SSSE3
-constexpr bool kHasPairs = true;
-#if HWY_TARGET == HWY_AVX2
-HWY_INLINE V sum_of_pairs(V unsigned_bytes, V bytes) { return V{_mm256_maddubs_epi16(unsigned_bytes.raw, bytes.raw)}; }
-#else
-HWY_INLINE V sum_of_pairs(V unsigned_bytes, V bytes) { return V{_mm_maddubs_epi16(unsigned_bytes.raw, bytes.raw)}; }
-#endif
-#else
-constexpr bool kHasPairs = false;
-HWY_INLINE V sum_of_pairs(V unsigned_bytes, V) { return unsigned_bytes; }
-#endif
-
 /// The medians of one vector of pixels.
 class Window {
+  using D = hn::CappedTag<std::int16_t, kMaxLanes>;
+  using DU = hn::RebindToUnsigned<D>;
+  using V = hn::Vec<D>;
+  using VU = hn::Vec<DU>;
+
  public:
   explicit Window(const simd::WeightedMedianScratch& scratch) : s_(scratch) {}
 
@@ -82,14 +69,9 @@ class Window {
     const auto under_half =
         hn::IfThenElse(moves, hn::ShiftRight<1>(hn::Sub(weight, hn::Set(d, 1))), hn::Set(d, std::int16_t{0x7FFF}));
     const auto one = hn::Set(du, 1);
-    const bool in_pairs =
-        kHasPairs && hn::AllTrue(du, hn::Eq(hn::ShiftRight<8>(hn::BitCast(du, hn::Sub(highest, lowest))), hn::Zero(du)));
-    if (in_pairs) pair_up(x, lowest);
     while (!hn::AllTrue(du, hn::Eq(low, high))) {
       const auto middle = hn::AverageRound(low, high);  // > low unless low == high
-      const auto limit = hn::BitCast(d, hn::Xor(middle, bias));
-      const auto lighter = in_pairs ? weight_of_pairs_below(hn::Sub(limit, lowest)) : weight_below(x, limit);
-      const auto below = hn::RebindMask(du, hn::Gt(lighter, under_half));
+      const auto below = hn::RebindMask(du, hn::Gt(weight_below(x, hn::BitCast(d, hn::Xor(middle, bias))), under_half));
       // A lane that has its answer has middle == low == high, and less than half below.
       high = hn::IfThenElse(below, hn::Sub(middle, one), high);
       low = hn::IfThenElse(below, low, middle);
@@ -148,52 +130,10 @@ class Window {
     return hn::Add(sum, hn::Add(left, right));
   }
 
-  /// Two taps of each pixel in the bytes of its lane: their weights, and how far their values are above the lowest that has
-  /// weight, as signed bytes. Of a tap without weight that may be anything.
-  void pair_up(int x, V lowest) {
-    const D d;
-    const auto base = hn::Add(lowest, hn::Set(d, 128)), low_byte = hn::Set(d, 0xFF);
-    const int taps = rows_ * kSide;
-    std::int16_t* pair = pairs_;
-    for (int i = 0; i < taps; i += 2, pair += 2 * kMaxLanes) {
-      auto weights = hn::Load(d, weights_ + i * kMaxLanes);
-      auto values = hn::And(hn::Sub(hn::LoadU(d, tap(i) + x), base), low_byte);
-      if (i + 1 < taps) {
-        weights = hn::Or(weights, hn::ShiftLeft<8>(hn::Load(d, weights_ + (i + 1) * kMaxLanes)));
-        values = hn::Or(values, hn::ShiftLeft<8>(hn::Sub(hn::LoadU(d, tap(i + 1) + x), base)));
-      }
-      hn::Store(weights, d, pair);
-      hn::Store(values, d, pair + kMaxLanes);
-    }
-  }
-  const std::int16_t* tap(int i) const { return values_[i / kSide] + i % kSide * kStep - kRadius; }
-
-  /// `limit`: 0 .. 255 above the lowest value.
-  HWY_INLINE V weight_of_pairs_below(V limit) const {
-    const D d;
-    const hn::Repartition<std::int8_t, D> d8;
-    const auto limits = hn::BitCast(d8, hn::Or(hn::And(hn::Sub(limit, hn::Set(d, 128)), hn::Set(d, 0xFF)),
-                                               hn::ShiftLeft<8>(hn::Sub(limit, hn::Set(d, 128)))));
-    auto sum = hn::Zero(d), other = sum;
-    const auto subtract_pair = [&](V& from, const std::int16_t* pair) HWY_ATTR {
-      const auto below = hn::VecFromMask(d8, hn::Lt(hn::BitCast(d8, hn::Load(d, pair + kMaxLanes)), limits));
-      from = hn::Sub(from, sum_of_pairs(hn::Load(d, pair), hn::BitCast(d, below)));  // -1 where it is below
-    };
-    const int pairs = (rows_ * kSide + 1) / 2;
-    const std::int16_t* pair = pairs_;
-    for (int i = 0; i + 1 < pairs; i += 2, pair += 4 * kMaxLanes) {
-      subtract_pair(sum, pair);
-      subtract_pair(other, pair + 2 * kMaxLanes);
-    }
-    if (pairs % 2 != 0) subtract_pair(sum, pair);
-    return hn::Add(sum, other);
-  }
-
   const simd::WeightedMedianScratch& s_;
   int rows_ = 0;
   const std::int16_t *values_[kSide], *guide_[kSide], *centre_values_, *centre_guide_;
   HWY_ALIGN_MAX std::int16_t weights_[kSide * kSide * kMaxLanes];
-  HWY_ALIGN_MAX std::int16_t pairs_[(kSide * kSide + 1) * kMaxLanes];  // weights and values in turn
 };
 
 void smooth_rows(const WeightedMedian& in, const simd::WeightedMedianScratch& s, View<std::uint16_t> dst, int y_begin,
