@@ -78,7 +78,9 @@ enum class JointId : std::uint8_t {
   kRightPinkyTip,
 };
 inline constexpr std::size_t kBodyJointIds = 21;  // those before the fingers
-inline constexpr std::size_t kFingerJoints = 20;  // of one hand: five fingers of four joints, the thumb first
+inline constexpr std::size_t kFingers = 5;        // of one hand, the thumb first
+inline constexpr std::size_t kJointsPerFinger = 4;
+inline constexpr std::size_t kFingerJoints = kFingers * kJointsPerFinger;  // of one hand
 inline constexpr std::size_t kJointIds = kBodyJointIds + 2 * kFingerJoints;
 
 constexpr bool is_finger(JointId id) { return static_cast<std::size_t>(id) >= kBodyJointIds; }
@@ -107,9 +109,21 @@ extern const Skeleton kBodyHands;  // "body_hands": every joint; the body's come
 extern const Skeleton kRightArm;   // "right_arm": right_shoulder, right_elbow, right_hand
 extern const Skeleton kLeftArm;    // "left_arm"
 
-/// A joint of a hand's fingers, 0 .. 19; `side`: left or right.
-constexpr JointId finger_joint(Side side, std::size_t joint) {
-  return static_cast<JointId>(kBodyJointIds + (side == Side::kRight ? kFingerJoints : 0) + joint);
+/// Which finger, the thumb first, and which of its joints, its root first.
+struct FingerJoint {
+  std::size_t finger, joint;
+};
+
+/// Where a finger's joint is in its hand. Of other joints it means nothing.
+constexpr FingerJoint finger_of(JointId id) {
+  const std::size_t in_hand = (static_cast<std::size_t>(id) - kBodyJointIds) % kFingerJoints;
+  return {in_hand / kJointsPerFinger, in_hand % kJointsPerFinger};
+}
+
+/// The joint at that place of a hand; `side`: left or right.
+constexpr JointId finger_joint(Side side, FingerJoint at) {
+  return static_cast<JointId>(kBodyJointIds + (side == Side::kRight ? kFingerJoints : 0) + at.finger * kJointsPerFinger +
+                              at.joint);
 }
 
 /// The skeleton of that name; null when there is none.

@@ -16,8 +16,11 @@ TEST(Skeleton, FindsJointsAndSkeletonsByName) {
   EXPECT_EQ(skeleton_named("arm"), nullptr);
   EXPECT_EQ(kBody.joints.size(), kBodyJointIds);
   EXPECT_EQ(kBodyHands.joints.size(), kJointIds);
-  EXPECT_EQ(finger_joint(Side::kRight, 7), JointId::kRightIndexTip);
-  EXPECT_EQ(finger_joint(Side::kLeft, 19), JointId::kLeftPinkyTip);
+  EXPECT_EQ(finger_joint(Side::kRight, {1, 3}), JointId::kRightIndexTip);
+  EXPECT_EQ(finger_joint(Side::kLeft, {4, 3}), JointId::kLeftPinkyTip);
+  const FingerJoint ring_middle = finger_of(JointId::kRightRingPip);
+  EXPECT_EQ(ring_middle.finger, 3u);
+  EXPECT_EQ(ring_middle.joint, 1u);
 }
 
 TEST(Skeleton, SidesAndParentsAgreeWithNames) {

@@ -47,21 +47,11 @@ struct FlatFinger {
   double along_m, aside_m;
   std::array<double, 3> bones_m;
 };
-constexpr std::array<FlatFinger, 5> kFlatHand = {{{0.025, 0.03, {0.045, 0.034, 0.028}},
-                                                  {0.092, 0.025, {0.042, 0.025, 0.02}},
-                                                  {0.09, 0.005, {0.046, 0.028, 0.021}},
-                                                  {0.085, -0.013, {0.042, 0.027, 0.021}},
-                                                  {0.078, -0.03, {0.033, 0.02, 0.018}}}};
-
-/// Which finger, the thumb first, and which of its joints from the root on.
-struct FingerJoint {
-  std::size_t finger, joint;
-};
-FingerJoint finger_of(JointId id) {
-  constexpr std::size_t kPerFinger = kFingerJoints / kFlatHand.size();
-  const std::size_t at = (static_cast<std::size_t>(id) - kBodyJointIds) % kFingerJoints;
-  return {at / kPerFinger, at % kPerFinger};
-}
+constexpr std::array<FlatFinger, kFingers> kFlatHand = {{{0.025, 0.03, {0.045, 0.034, 0.028}},
+                                                         {0.092, 0.025, {0.042, 0.025, 0.02}},
+                                                         {0.09, 0.005, {0.046, 0.028, 0.021}},
+                                                         {0.085, -0.013, {0.042, 0.027, 0.021}},
+                                                         {0.078, -0.03, {0.033, 0.02, 0.018}}}};
 
 /// The bone that ends in a finger's joint, of a flat hand. The thumb stands half aside.
 Vec3 flat_bone(JointId id, Vec3 along, Vec3 aside) {

@@ -44,13 +44,12 @@ constexpr std::array<std::string_view, 2 * kFingerJoints> kFingerNames = {
 
 constexpr std::array<JointDef, kJointIds> with_fingers() {
   constexpr double kRadius_m = 0.014;
-  constexpr std::size_t kPerFinger = 4;
   std::array<JointDef, kJointIds> out = {};
   std::copy(kBodyJoints.begin(), kBodyJoints.end(), out.begin());
   for (std::size_t i = 0; i < kFingerNames.size(); ++i) {
-    const bool left = i < kFingerJoints, root = i % kPerFinger == 0;
-    const std::size_t at = kBodyJointIds + i,
-                      parent = root ? static_cast<std::size_t>(left ? kLeftWrist : kRightWrist) : at - 1;
+    const std::size_t at = kBodyJointIds + i;
+    const bool left = i < kFingerJoints, root = finger_of(static_cast<JointId>(at)).joint == 0;
+    const std::size_t parent = root ? static_cast<std::size_t>(left ? kLeftWrist : kRightWrist) : at - 1;
     out[at] = {static_cast<JointId>(at), kFingerNames[i], static_cast<std::int8_t>(parent), left ? Side::kLeft : Side::kRight,
                kRadius_m};
   }

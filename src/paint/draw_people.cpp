@@ -41,8 +41,9 @@ cv::Scalar paled(const cv::Scalar& color, double visibility) {
 
 void draw_hand(cv::Mat& rgb, const SeenHand& hand, int thickness) {
   for (std::size_t i = 1; i < kHandPoints; ++i) {
-    const std::size_t from = i % 4 == 1 ? 0 : i - 1;
-    cv::line(rgb, place(hand.points[from]), place(hand.points[i]), kFingerColors[(i - 1) / 4], thickness, cv::LINE_AA, 4);
+    const std::size_t from = i % kJointsPerFinger == 1 ? 0 : i - 1;
+    cv::line(rgb, place(hand.points[from]), place(hand.points[i]), kFingerColors[(i - 1) / kJointsPerFinger], thickness,
+             cv::LINE_AA, 4);
   }
   for (const SeenPoint& point : hand.points)
     cv::circle(rgb, place(point), thickness * 16, cv::Scalar(20, 20, 20), cv::FILLED, cv::LINE_AA, 4);

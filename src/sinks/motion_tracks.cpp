@@ -15,11 +15,11 @@ std::string bone_name(JointId joint) {
       "Hips",      "Spine",    "Chest",       "Neck",         "Head",       "LeftArm",   "LeftForeArm",
       "LeftWrist", "LeftHand", "RightArm",    "RightForeArm", "RightWrist", "RightHand", "LeftUpLeg",
       "LeftLeg",   "LeftFoot", "LeftToeBase", "RightUpLeg",   "RightLeg",   "RightFoot", "RightToeBase"};
-  constexpr std::array<std::string_view, 5> kFingers = {"Thumb", "Index", "Middle", "Ring", "Pinky"};
+  constexpr std::array<std::string_view, kFingers> kFingerNames = {"Thumb", "Index", "Middle", "Ring", "Pinky"};
   const auto at = static_cast<std::size_t>(joint);
   if (!is_finger(joint)) return std::string(kBoneNames[at]);
-  const std::size_t in_hand = (at - kBodyJointIds) % kFingerJoints;
-  return fmt::format("{}Hand{}{}", joint < JointId::kRightThumbCmc ? "Left" : "Right", kFingers[in_hand / 4], in_hand % 4 + 1);
+  const auto [finger, in_finger] = finger_of(joint);
+  return fmt::format("{}Hand{}{}", joint < JointId::kRightThumbCmc ? "Left" : "Right", kFingerNames[finger], in_finger + 1);
 }
 
 std::size_t FrameSlots::slot_at(double t_s) {

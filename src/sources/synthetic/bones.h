@@ -5,6 +5,7 @@
 #include <array>
 
 #include "duoptic/geometry.h"
+#include "duoptic/skeleton.h"
 
 namespace duo::synthetic {
 
@@ -45,7 +46,7 @@ struct Finger {
   Vec3 root_m, bend_m, tip_m;
 };
 /// The thumb first, of a person of 1.75 m.
-using Fingers = std::array<Finger, 5>;
+using Fingers = std::array<Finger, kFingers>;
 Fingers make_fingers(const ArmPose& pose, int side);
 
 /// Two bones and what hangs on them; the frames have y along their bone.

@@ -73,11 +73,11 @@ std::vector<NamedJoint> joints_of(const Bones& bones) {
   // Fingers bend once: of the two joints between root and tip the first.
   constexpr std::array<std::size_t, 3> kBent = {0, 1, 3};
   for (const int side : {kLeftSide, kRightSide})
-    for (std::size_t finger = 0; finger < 5; ++finger) {
+    for (std::size_t finger = 0; finger < kFingers; ++finger) {
       const Finger& bent = bones.fingers[side][finger];
       const Vec3 at_m[] = {bent.root_m, bent.bend_m, bent.tip_m};
       for (std::size_t i = 0; i < 3; ++i)
-        out.push_back({finger_joint(side == kLeftSide ? duo::Side::kLeft : duo::Side::kRight, 4 * finger + kBent[i]),
+        out.push_back({finger_joint(side == kLeftSide ? duo::Side::kLeft : duo::Side::kRight, {finger, kBent[i]}),
                        bones.arms[side].person_from_end * (bones.scale * at_m[i])});
     }
   return out;

@@ -10,10 +10,10 @@ namespace {
 
 constexpr std::array<std::size_t, 5> kPalm = {0, 5, 9, 13, 17};  // wrist and knuckles
 /// From the skin to a joint's centre, by how far it is from its finger's root; the wrist first.
-constexpr std::array<double, 5> kFlesh_m = {0.02, 0.013, 0.010, 0.008, 0.007};
+constexpr std::array<double, 1 + kJointsPerFinger> kFlesh_m = {0.02, 0.013, 0.010, 0.008, 0.007};
 constexpr double kFingerDepth_px = 0.35;  // one standard deviation of a surface
 
-double flesh_m(std::size_t point) { return point == 0 ? kFlesh_m[0] : kFlesh_m[1 + (point - 1) % 4]; }
+double flesh_m(std::size_t point) { return point == 0 ? kFlesh_m[0] : kFlesh_m[1 + (point - 1) % kJointsPerFinger]; }
 
 /// How far behind the palm the network imagines each point, as large as the hand is in the picture.
 std::array<double, kHandPoints> behind_palm_m(const Rectified& geometry, const SeenHand& hand, double z_m) {
@@ -113,7 +113,8 @@ void Fingers::publish(Person& person) const {
   constexpr double kAstray_m = 0.015;  // a frame
   const Joint& at_wrist = person.joints[index_of(wrist())];
   for (std::size_t i = 0; i < kFingerJoints; ++i) {
-    Joint& joint = person.joints[index_of(finger_joint(left_ ? Side::kLeft : Side::kRight, i))];
+    Joint& joint =
+        person.joints[index_of(finger_joint(left_ ? Side::kLeft : Side::kRight, {i / kJointsPerFinger, i % kJointsPerFinger}))];
     joint = {};
     joint.p_in_rig_m = at_wrist.p_in_rig_m;
     if (hidden_ > kMostHidden || at_wrist.state == JointState::kLost) continue;

@@ -8,7 +8,8 @@
 
 namespace duo::body {
 
-/// The joints of a hand's fingers in one frame, the thumb's first, from the roots to the tips.
+/// The joints of a hand's fingers in one frame, as the network of hands has them after the wrist: the thumb's first, from the
+/// roots to the tips.
 struct FingerPlaces {
   std::array<Vec3, kFingerJoints> p = {};  // metres, rig frame
   std::array<Covariance3, kFingerJoints> covariance = {};
