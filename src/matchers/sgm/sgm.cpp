@@ -11,8 +11,8 @@ bool looks_clear(const SgmParams& params, int noise_q4, int blur_q4) {
 
 void keep_confidence(View<const std::uint16_t> d_q4, int y, View<std::uint16_t> columns, View<std::uint8_t> confidence) {
   const int w = d_q4.width(), h = d_q4.height();
-  std::uint16_t *const least = columns.row(0), *const above_most =
-                                                   columns.row(1);  // one more than the most, so that holes are 0
+  std::uint16_t* const least = columns.row(0);
+  std::uint16_t* const above_most = columns.row(1);  // one more than the most, so that holes are 0
   std::fill_n(least, w, Disparity::kNone);
   std::fill_n(above_most, w, std::uint16_t{0});
   for (int v = std::max(y - kConfidenceReach, 0); v <= std::min(y + kConfidenceReach, h - 1); ++v) {

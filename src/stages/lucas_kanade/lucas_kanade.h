@@ -28,8 +28,7 @@ namespace duo {
 /// Threads  pairs of rows are independent
 /// Exact    ref, simd and vk agree bit for bit: integers, e in 1/16, g in 1/4; what a tap adds is rounded once, see
 ///          lucas_kanade_params.h; sums stay below 2^26
-/// Source   Lucas, Kanade, "An iterative image registration technique with an application to stereo vision", 1981; a step
-/// beyond
+/// Source   Lucas, Kanade, "An iterative image registration technique with an application to stereo vision", 1981; a step past
 ///          the least sum as in Young, "Iterative methods for solving partial difference equations of elliptic type", 1954
 ///          (over-relaxation); taps at disparities of their own, each second pixel, are ours
 struct LucasKanade {
