@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,9 +10,11 @@
 #include <vector>
 
 #include "calib/judge_scene.h"
+#include "calib/normal_equations.h"
 #include "calib/rig_fitting.h"
 #include "calib/row_offsets.h"
 #include "calib/scene_pose.h"
+#include "duoptic/statistics.h"
 
 namespace duo {
 namespace {
@@ -116,6 +119,32 @@ std::string why_rows_differ(const std::vector<SceneMatch>& matches, int height) 
       "the rows of both pictures do not fit: the same points lie {:.0f} to {:.0f} px lower in the right one, as no rectified "
       "pair has them: give a rig; or one picture was zoomed, cropped or scaled",
       rows_px[rows_px.size() / 20], rows_px[rows_px.size() - 1 - rows_px.size() / 20]);
+}
+
+/// Median of what values at the matches keep when a plane over the left picture is taken off them.
+double off_plane_px(const std::vector<SceneMatch>& matches, double (*value)(const SceneMatch&)) {
+  const auto count = static_cast<Eigen::Index>(matches.size());
+  Eigen::MatrixXd terms(count, 3);
+  Eigen::VectorXd values(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const SceneMatch& m = matches[static_cast<std::size_t>(i)];
+    terms.row(i) << 1, m.left_px.x, m.left_px.y;
+    values[i] = value(m);
+  }
+  const Eigen::VectorXd plane = solve_normal(terms.transpose() * terms, terms.transpose() * values);
+  std::vector<double> off;
+  for (Eigen::Index i = 0; i < count; ++i) off.push_back(std::abs(values[i] - plane.dot(terms.row(i).transpose())));
+  return median(off);
+}
+
+/// Depth moves points along rows where the cameras stand side by side, and along columns where both pictures lie on their side.
+std::string why_along_columns(const std::vector<SceneMatch>& matches) {
+  constexpr double kTimes = 3, kLeast_px = 1.5;
+  const double across_px = off_plane_px(matches, [](const SceneMatch&m) { return m.left_px.x - m.right_px.x; }),
+               down_px = off_plane_px(matches, [](const SceneMatch&m) { return m.left_px.y - m.right_px.y; });
+  if (down_px < kLeast_px || down_px < kTimes * across_px) return {};
+  return "both pictures lie on their side, or one camera stands above the other: things at other distances lie in other rows, "
+         "not in other columns; turn both pictures by 90 degrees, or both cameras";
 }
 
 /// Of a pair that is taken as rectified: where its points would lie.
@@ -226,7 +255,8 @@ std::optional<RigFit> RigFitting::by_matches(const SceneMatches& scene) const {
   const auto matches = agreeing_matches(lenses_, scene);
   if (!matches) return {};
   if (!rig_) {
-    std::string why = why_not_rectified(*matches);
+    std::string why = why_along_columns(*matches);
+    if (why.empty()) why = why_not_rectified(*matches);
     if (why.empty()) why = why_rows_differ(*matches, size_.height);
     return why.empty() ? RigFit() : misfit(std::move(why));
   }

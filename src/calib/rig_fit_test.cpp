@@ -243,6 +243,13 @@ TEST(RigFit, APictureThatIsTurnedOverOrANegative) {
   }
 }
 
+TEST(RigFit, BothPicturesOnTheirSide) {
+  for (const std::uint32_t seed : {1u, 2u}) {
+    SCOPED_TRACE(seed);
+    expect_told(rig_fit({}, pairs_of(seed, on_its_side, on_its_side), 2), "both pictures lie on their side");
+  }
+}
+
 /// Without a rig rows may be off, and are put right; those of a picture that was zoomed into are not.
 TEST(RigFit, RowsOfAZoomedPictureDoNotFit) {
   const SyntheticPair ideal = render_synthetic({.size = {480, 360}, .ideal = true}, 2);

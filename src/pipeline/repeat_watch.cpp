@@ -21,18 +21,18 @@ void take_grid(View<const Rgb8> picture, std::vector<std::uint8_t>& into) {
 }
 
 Change change_of(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now) {
-  constexpr int kSame = 1;             // level: what coding a picture again may change; a camera's noise is more
   constexpr int kStep = 16;            // levels: above the noise of cameras and of coding
   constexpr std::size_t kShare = 200;  // one of so many pixels: an arm, a head
+  constexpr std::size_t kQuiet =
+      4;  // levels' inverse, in the mean: what coding a picture again changes; cameras' noise is more
   if (before.size() != now.size()) return Change::kLittle;  // the first
-  std::size_t steps = 0;
-  int largest = 0;
+  std::size_t steps = 0, sum = 0;
   for (std::size_t i = 0; i < now.size(); ++i) {
     const int by = std::abs(now[i] - before[i]);
-    largest = std::max(largest, by);
+    sum += static_cast<std::size_t>(by);
     steps += by > kStep;
   }
-  if (largest <= kSame) return Change::kNone;
+  if (sum * kQuiet <= now.size() && steps * kShare * 8 <= now.size()) return Change::kNone;
   return steps * kShare >= now.size() ? Change::kMotion : Change::kLittle;
 }
 

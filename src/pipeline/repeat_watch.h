@@ -11,8 +11,8 @@
 namespace duo {
 
 /// Looks for a camera that hangs, or whose video has each picture twice: what moves is then seen at two moments, and its depth
-/// is wrong. A picture counts as repeated when a grid of its pixels is, to a level, that of the one before, and the other camera's shows
-/// that something moved. One pair costs some thousand comparisons.
+/// is wrong. A picture counts as repeated when a grid of its pixels is that of the one before, but for what coding it again
+/// changes, and the other camera's shows that something moved. One pair costs some thousand comparisons.
 ///
 /// Threads  one caller
 class RepeatWatch {
