@@ -4,7 +4,7 @@ target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/pipeline/registry.cpp $
   ${PROJECT_SOURCE_DIR}/src/pipeline/focus_line.cpp
   ${PROJECT_SOURCE_DIR}/src/pipeline/frame_stream.cpp ${PROJECT_SOURCE_DIR}/src/pipeline/pipeline.cpp
   ${PROJECT_SOURCE_DIR}/src/pipeline/repeat_watch.cpp ${PROJECT_SOURCE_DIR}/src/pipeline/rig_watch.cpp
-${PROJECT_SOURCE_DIR}/src/pipeline/skew_watch.cpp
+  ${PROJECT_SOURCE_DIR}/src/pipeline/skew_watch.cpp
   ${PROJECT_SOURCE_DIR}/src/pipeline/tap.cpp)
 duoptic_test(pipeline/pipeline ${PROJECT_SOURCE_DIR}/src/pipeline/pipeline_test.cpp)
 duoptic_test(pipeline/pipeline_focus ${PROJECT_SOURCE_DIR}/src/pipeline/pipeline_focus_test.cpp)
