@@ -21,7 +21,7 @@ struct SgmParams {
   int speckle = 60;
   int speckle_step_q4 = 16;
   int smooth = 1;
-  int refine = 1;
+  int refine = 0;
 
   static constexpr int kMaxDisparity = 256;
   SemiGlobalParams semi_global(bool clear, int noise_q4) const;

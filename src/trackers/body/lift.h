@@ -29,10 +29,12 @@ struct DepthView {
   View<const std::uint16_t> d_q4;
   const Rectified* geometry = nullptr;
 
-  /// Disparity on limbs, which are thin beside a matcher's windows, comes out this much too small.
+  /// Disparity on clothes and skin comes out this much too small, by exact depth of rendered people.
+  static constexpr double kShort_px = 0.08;
+  /// On limbs, which are thin beside a matcher's windows, by so much more.
   static constexpr double kThin_px = 0.1;
 
-  double z_m(std::uint16_t q4) const { return geometry->focal_px * geometry->baseline_m / (q4 / 16.0); }
+  double z_m(std::uint16_t q4) const { return geometry->focal_px * geometry->baseline_m / (q4 / 16.0 + kShort_px); }
   /// Depth that a change of one pixel of disparity makes.
   double m_per_px(double z) const { return z * z / (geometry->focal_px * geometry->baseline_m); }
   double px_per_m(double z) const { return geometry->focal_px / z; }

@@ -19,7 +19,9 @@ inline Rectified geometry() {
   return out;
 }
 
-inline std::uint16_t q4_at(double z_m) { return static_cast<std::uint16_t>(std::lround(16 * 40 / z_m)); }
+inline std::uint16_t q4_at(double z_m) {
+  return static_cast<std::uint16_t>(std::lround(16 * (40 / z_m - DepthView::kShort_px)));
+}
 
 struct Map {
   Rectified geometry_ = geometry();
