@@ -6,7 +6,7 @@ namespace duo::vk {
 #endif
 
 struct SettleClearPush {
-  int soften, clear, p2, p2_least;  // of SgmParams
+  int soften, clear;  // of SgmParams
 };
 
 #ifdef __cplusplus

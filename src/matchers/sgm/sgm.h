@@ -51,17 +51,14 @@ class Sgm {
   Measured measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear = {});
   void match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer);
   /// Of the last pair: what was compared, and whether as clear pictures.
-  SemiGlobal compared() const {
-    return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global(clear_, noise_q4_)};
-  }
+  SemiGlobal compared() const { return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global()}; }
   bool clear() const { return clear_; }
 
  private:
   SgmParams params_;
   int max_disparity_;
   std::shared_ptr<ClearStream> stream_;
-  bool clear_ = false;  // of the last pair, as its noise
-  int noise_q4_ = 0;
+  bool clear_ = false;  // of the last pair
   SgmMaps maps_;
   PlaneImages left_, right_;
 };
@@ -77,9 +74,7 @@ class Sgm {
   void match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows = {}, std::optional<bool> clear = {});
   Measured measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear = {});
   void match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer, RowBand rows = {});
-  SemiGlobal compared() const {
-    return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global(clear_, noise_q4_)};
-  }
+  SemiGlobal compared() const { return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global()}; }
   bool clear() const { return clear_; }
 
  private:
@@ -87,8 +82,7 @@ class Sgm {
   SgmParams params_;
   int max_disparity_;
   std::shared_ptr<ClearStream> stream_;
-  bool clear_ = false;  // of the last pair, as its noise
-  int noise_q4_ = 0;
+  bool clear_ = false;  // of the last pair
   SgmMaps maps_;
   PlaneImages left_, right_;
   BalanceScratch balance_scratch_;

@@ -2,13 +2,10 @@
 
 #include <fmt/ranges.h>
 
-#include "stages/types/clear.h"
-
 namespace duo {
 
-SemiGlobalParams SgmParams::semi_global(bool clear, int noise_q4) const {
-  const int least = least_p2(clear, noise_q4, p2, p2_least);
-  return {census_truncation, truncation, p1, p2, least, p2_gradient, paths == 5 || paths == 8, paths == 4 || paths == 8};
+SemiGlobalParams SgmParams::semi_global() const {
+  return {census_truncation, truncation, p1, p2, p2_least, p2_gradient, paths == 5 || paths == 8, paths == 4 || paths == 8};
 }
 
 Result<SgmParams> sgm_params(std::string_view preset, const Overrides& overrides) {

@@ -24,7 +24,7 @@ struct SgmParams {
   int refine = 0;
 
   static constexpr int kMaxDisparity = 256;
-  SemiGlobalParams semi_global(bool clear, int noise_q4) const;
+  SemiGlobalParams semi_global() const;
 };
 
 inline constexpr Parameter<SgmParams> kSgmParameters[] = {
@@ -38,7 +38,7 @@ inline constexpr Parameter<SgmParams> kSgmParameters[] = {
     {"truncation", &SgmParams::truncation, "", 0, 32, "most that gray and each gradient add"},
     {"p1", &SgmParams::p1, "", 0, 112, "penalty of a step of one disparity"},
     {"p2", &SgmParams::p2, "", 0, 112, "penalty of a larger step where the picture is flat"},
-    {"p2-least", &SgmParams::p2_least, "", 0, 112, "and where it is not, at least; in compressed pictures it is p2 everywhere"},
+    {"p2-least", &SgmParams::p2_least, "", 0, 112, "and where it is not, at least"},
     {"p2-gradient", &SgmParams::p2_gradient, "", 1, 255, "gray step that halves p2"},
     {"tolerance", &SgmParams::tolerance, "px", 0, 4, "left-right check: difference allowed"},
     {"reach", &SgmParams::reach, "px", 0, 4, "left-right check: columns beside the match that may confirm it"},

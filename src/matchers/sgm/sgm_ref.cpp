@@ -36,8 +36,8 @@ Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<boo
 }
 
 void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer) {
-  clear_ = measured.clear, noise_q4_ = measured.noise_q4;
-  const int noise_q4 = params_.soften != 0 ? counted_noise_q4(clear_, noise_q4_) : 0;
+  clear_ = measured.clear;
+  const int noise_q4 = params_.soften != 0 ? measured.noise_q4 : 0;
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
     if (noise_q4 > 0) ref::bilateral(gray, bilateral_range(noise_q4), maps_.softened);
     timer.stage("bilateral");
@@ -63,7 +63,7 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const M
   timer.stage("weighted_median");
   if (refine) ref::lucas_kanade({in.left.value[0], in.right.value[0], smoothed, max_disparity_}, out.d_q4);
   timer.stage("lucas_kanade");
-  Image<std::uint16_t> columns({out.d_q4.width(), 2});
+  Image<std::uint16_t> columns(out.confidence.empty() ? Size{} : Size{out.d_q4.width(), 2});
   for (int y = 0; y < out.confidence.height(); ++y) keep_confidence(out.d_q4, y, columns, out.confidence);
   timer.stage("keep_confidence");
 }

@@ -22,7 +22,7 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
             PlaneImages::kPadRight),  // as little as its stage takes: only the right view is looked up beside itself
       right_(setup.size, SemiGlobalScratch::padding(setup.max_disparity)),
       balance_scratch_(setup.size),
-      scratch_(setup.size, setup.max_disparity, params.semi_global(false, 0), pool.threads()),
+      scratch_(setup.size, setup.max_disparity, params.semi_global(), pool.threads()),
       speckle_scratch_(setup.size),
       smooth_scratch_(setup.size),
       refine_scratch_(setup.size, pool.most()),
@@ -47,8 +47,8 @@ Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<boo
 }
 
 void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer, RowBand rows) {
-  clear_ = measured.clear, noise_q4_ = measured.noise_q4;
-  const int noise_q4 = params_.soften != 0 ? counted_noise_q4(clear_, noise_q4_) : 0;
+  clear_ = measured.clear;
+  const int noise_q4 = params_.soften != 0 ? measured.noise_q4 : 0;
   // What the result depends on: disparities around a confidence; taps of the last step and of the median; islands, which are
   // smaller than `speckle` pixels where they matter; paths from above, and with paths from below the whole picture.
   const int h = pair.size().height;
@@ -58,7 +58,7 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const M
   const RowBand smoothed_rows = refine ? rows.grown(LucasKanade::kRows, h) : rows;
   const RowBand checked_rows = params_.smooth != 0 ? smoothed_rows.grown(WeightedMedian::kRadius, h) : smoothed_rows;
   const RowBand joined = checked_rows.grown(params_.speckle, h);
-  const SemiGlobalParams semi_global = params_.semi_global(clear_, noise_q4_);
+  const SemiGlobalParams semi_global = params_.semi_global();
   const int plane_rows = semi_global.upward ? h : joined.end;
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
     if (noise_q4 > 0) simd::bilateral(pool_, gray, bilateral_range(noise_q4), maps_.softened);

@@ -33,14 +33,14 @@ Result<Sgm> Sgm::make(Device& device, const SgmParams& params, const MatchSetup&
   DUO_TRY_ASSIGN(out.blur_, Blur::make(device));
   DUO_TRY_ASSIGN(out.bilateral_, Bilateral::make(device));
   DUO_TRY_ASSIGN(out.match_planes_, MatchPlanes::make(device));
-  DUO_TRY_ASSIGN(out.semi_global_, SemiGlobal::make(device, setup.max_disparity, params.semi_global(false, 0)));
+  DUO_TRY_ASSIGN(out.semi_global_, SemiGlobal::make(device, setup.max_disparity, params.semi_global()));
   DUO_TRY_ASSIGN(out.check_left_right_, CheckLeftRight::make(device));
   DUO_TRY_ASSIGN(out.remove_speckle_, RemoveSpeckle::make(device));
   DUO_TRY_ASSIGN(out.weighted_median_, WeightedMedian::make(device));
   DUO_TRY_ASSIGN(out.lucas_kanade_, LucasKanade::make(device));
   DUO_TRY_ASSIGN(out.keep_confidence_,
                  Kernel::make(device, {"keep confidence", kKeepConfidenceCode, 2, sizeof(KeepConfidencePush)}));
-  DUO_TRY_ASSIGN(out.settle_clear_, Kernel::make(device, {"settle clear", kSettleClearCode, 4, sizeof(SettleClearPush)}));
+  DUO_TRY_ASSIGN(out.settle_clear_, Kernel::make(device, {"settle clear", kSettleClearCode, 3, sizeof(SettleClearPush)}));
   return out;
 }
 
@@ -48,7 +48,7 @@ Result<Sgm::Maps> Sgm::make_maps(Device& device, const SgmParams& params, const 
   const Size size = setup.size, planes = MatchPlanes::packed_size(size);
   Maps out;
   // First what may be too large.
-  DUO_TRY_ASSIGN(out.semi_global, SemiGlobal::Scratch::make(device, size, setup.max_disparity, params.semi_global(false, 0)));
+  DUO_TRY_ASSIGN(out.semi_global, SemiGlobal::Scratch::make(device, size, setup.max_disparity, params.semi_global()));
   DUO_TRY_ASSIGN(out.balance, Balance::Scratch::make(device, size));
   DUO_TRY_ASSIGN(out.noise, Noise::make_scratch(device));
   DUO_TRY_ASSIGN(out.blur, Blur::make_scratch(device));
@@ -56,7 +56,6 @@ Result<Sgm::Maps> Sgm::make_maps(Device& device, const SgmParams& params, const 
   DUO_TRY_ASSIGN(out.balanced, make_map<std::uint8_t>(device, "balanced", size));
   DUO_TRY_ASSIGN(out.noise_q4, Buffer::make(device, "sgm noise", sizeof(std::uint32_t), Memory::kDevice));
   DUO_TRY_ASSIGN(out.blur_q4, Buffer::make(device, "sgm blur", sizeof(std::uint32_t), Memory::kDevice));
-  DUO_TRY_ASSIGN(out.p2_least, Buffer::make(device, "sgm p2 least", sizeof(std::int32_t), Memory::kDevice));
   const std::int32_t before_the_first = 0;
   DUO_TRY_ASSIGN(out.stream, make_filled(device, "sgm stream", std::as_bytes(std::span(&before_the_first, 1))));
   DUO_TRY_ASSIGN(out.soft_left, make_map<std::uint8_t>(device, "soft left", size));
@@ -105,8 +104,8 @@ void Sgm::record_winners(Recorder& recorder, const Input& pair, BufferView<std::
   noise_.record(recorder, pair.left, pair.right, maps_.noise, maps_.noise_q4, size);
   recorder.stage("noise");
   blur_.record(recorder, pair.left, pair.right, maps_.blur, maps_.blur_q4, size);
-  recorder.dispatch(settle_clear_, SettleClearPush{params_.soften, params_.clear, params_.p2, params_.p2_least},
-                    {writes(maps_.noise_q4), reads(maps_.blur_q4), writes(maps_.stream), writes(maps_.p2_least)}, {1, 1});
+  recorder.dispatch(settle_clear_, SettleClearPush{params_.soften, params_.clear},
+                    {writes(maps_.noise_q4), reads(maps_.blur_q4), writes(maps_.stream)}, {1, 1});
   recorder.stage("blur");
   balance_.record(recorder, {pair.left, pair.right, pair.left_inside, pair.right_inside}, setup_.max_disparity, &maps_.stream,
                   maps_.balance, balanced, size);
@@ -119,7 +118,7 @@ void Sgm::record_winners(Recorder& recorder, const Input& pair, BufferView<std::
   match_planes_.record(recorder, left_of(pair), pair.left_inside, maps_.noise_q4, maps_.stream, left, size);
   match_planes_.record(recorder, right_as_matched(), pair.right_inside, maps_.noise_q4, maps_.stream, right, size);
   recorder.stage("match_planes");
-  semi_global_.record(recorder, left, right, maps_.p2_least, maps_.semi_global,
+  semi_global_.record(recorder, left, right, maps_.semi_global,
                       {whole<std::int16_t>(maps_.left_winner), whole<std::int16_t>(maps_.right_winner),
                        whole<std::uint16_t>(maps_.fine), margin},
                       size);

@@ -94,16 +94,5 @@ TEST(Blur, SimdAgrees) {
   }
 }
 
-// By hand: between a quarter of a level and 2 1/4 the penalty falls from 40 to 22: at 20 sixteenths, half way, it is 31.
-TEST(Clear, OthersHaveSomeNoiseAndOnePenalty) {
-  EXPECT_EQ(counted_noise_q4(true, 0), 0);
-  EXPECT_EQ(counted_noise_q4(false, 0), 4);
-  EXPECT_EQ(counted_noise_q4(false, 20), 20);
-  for (const int noise_q4 : {0, 4}) EXPECT_EQ(least_p2(false, noise_q4, 40, 22), 40);
-  EXPECT_EQ(least_p2(false, 20, 40, 22), 31);
-  for (const int noise_q4 : {36, 256}) EXPECT_EQ(least_p2(false, noise_q4, 40, 22), 22);
-  EXPECT_EQ(least_p2(true, 0, 40, 22), 22);
-}
-
 }  // namespace
 }  // namespace duo

@@ -19,7 +19,6 @@ layout(std430, binding = 4) readonly buffer Volume2 { uint volume_2[]; };
 layout(std430, binding = 5) readonly buffer Volume3 { uint volume_3[]; };
 layout(std430, binding = 6) writeonly buffer Found { uint found[]; };  // [y][x]: d, S(d - 1) - S(d), S(d + 1) - S(d), margin
 layout(std430, binding = 7) writeonly buffer RightWinner { int16_t right_winner[]; };
-layout(std430, binding = 8) readonly buffer P2Least { int p2_least; };
 layout(push_constant) uniform Push { SemiGlobalPush p; };
 #include "stages/semi_global/semi_global_path.glsl"
 
@@ -93,7 +92,6 @@ uint pick() {
 }
 
 void walk(int y) {
-  const int least_p2 = p2_least;
   begin_path();
   for (int k = 0; k < kWords; ++k) right_least[k] = uvec4(kNone);
   load(y, p.width - 1);
@@ -103,7 +101,7 @@ void walk(int y) {
     for (int k = 0; k < kWords; ++k) cost[k] = cost_ahead[k];
     for (int i = 0; i < kVolumes * kWords; ++i) sums[i] = sums_ahead[i];
     if (x > 0) load(y, x - 1);
-    const int p2 = max(least_p2, p.p2 * p.p2_gradient / (p.p2_gradient + abs(gray_here - gray_before)));
+    const int p2 = max(p.p2_least, p.p2 * p.p2_gradient / (p.p2_gradient + abs(gray_here - gray_before)));
     advance(uint(p.p1), uint(p2));
     total();
     const int right = offer_to_right();

@@ -11,7 +11,6 @@ layout(local_size_x = kPathGroup) in;
 layout(std430, binding = 0) readonly buffer Costs { uint costs[]; };
 layout(std430, binding = 1) readonly buffer Left { uint left_planes[]; };
 layout(std430, binding = 2) buffer Volume { uint volume[]; };  // sums of paths, laid out as the costs
-layout(std430, binding = 3) readonly buffer P2Least { int p2_least; };
 layout(push_constant) uniform Push { SemiGlobalPathPush p; };
 #include "stages/semi_global/semi_global_path.glsl"
 
@@ -40,7 +39,6 @@ void store(ivec2 at) {
 void walk(int line) {
   const int steps = p.dy == 0 ? p.width : p.height;
   ivec2 at = p.dy == 0 ? ivec2(p.dx > 0 ? 0 : p.width - 1, line) : ivec2(line, p.dy > 0 ? 0 : p.height - 1);
-  const int least_p2 = p2_least;
   begin_path();
   load(at);
   int gray_before = gray_ahead;
@@ -55,7 +53,7 @@ void walk(int line) {
     const bool leaves = at.x < 0 || at.x >= p.width;
     if (leaves) at.x = at.x < 0 ? p.width - 1 : 0;
     if (i + 1 < steps) load(at);
-    const int p2 = max(least_p2, p.p2 * p.p2_gradient / (p.p2_gradient + abs(gray_here - gray_before)));
+    const int p2 = max(p.p2_least, p.p2 * p.p2_gradient / (p.p2_gradient + abs(gray_here - gray_before)));
     advance(uint(p.p1), uint(p2));
     store(here);
     gray_before = gray_here;

@@ -67,15 +67,15 @@ Result<SemiGlobal> SemiGlobal::make(const Device& device, int max_disparity, con
   const std::span path_constants(constants, 1);
   DUO_TRY_ASSIGN(out.costs_, Kernel::make(device, {"semi-global costs", kCostsCode, 3, sizeof(SemiGlobalCostsPush)}));
   DUO_TRY_ASSIGN(out.path_,
-                 Kernel::make(device, {"semi-global path", kPathCode, 4, sizeof(SemiGlobalPathPush), path_constants, lanes}));
+                 Kernel::make(device, {"semi-global path", kPathCode, 3, sizeof(SemiGlobalPathPush), path_constants, lanes}));
   DUO_TRY_ASSIGN(out.winners_,
-                 Kernel::make(device, {"semi-global winners", kSemiGlobalCode, 9, sizeof(SemiGlobalPush), constants, lanes}));
+                 Kernel::make(device, {"semi-global winners", kSemiGlobalCode, 8, sizeof(SemiGlobalPush), constants, lanes}));
   DUO_TRY_ASSIGN(out.fine_, Kernel::make(device, {"semi-global fine", kFineCode, 4, sizeof(SemiGlobalFinePush)}));
   return out;
 }
 
 void SemiGlobal::record(Recorder& recorder, BufferView<std::uint32_t> left, BufferView<std::uint32_t> right,
-                        const Buffer& p2_least, const Scratch& scratch, const Match& out, Size size) const {
+                        const Scratch& scratch, const Match& out, Size size) const {
   const Size planes{size.width, kPackedPlanes * size.height};
   DUO_CHECK(left.holds(planes) && right.holds(planes) && out.left.holds(size) && out.right.holds(size) && out.fine.holds(size));
   DUO_CHECK(out.margin.absent() || out.margin.holds(size));
@@ -90,38 +90,39 @@ void SemiGlobal::record(Recorder& recorder, BufferView<std::uint32_t> left, Buff
 
   // The directions of one pass share no volume, so that no barrier keeps them from running at the same time.
   const std::vector<Buffer>& volumes = scratch.volumes_;
-  record_path(recorder, left, p2_least, scratch, 1, 0, volumes[0], false);
+  record_path(recorder, left, scratch, 1, 0, volumes[0], false);
   for (const int dy : {1, -1}) {
     if (dy < 0 && !params_.upward) continue;
-    record_path(recorder, left, p2_least, scratch, 0, dy, volumes[1], dy < 0);
+    record_path(recorder, left, scratch, 0, dy, volumes[1], dy < 0);
     if (!params_.diagonals) continue;
-    record_path(recorder, left, p2_least, scratch, 1, dy, volumes[2], dy < 0);
-    record_path(recorder, left, p2_least, scratch, -1, dy, volumes[3], dy < 0);
+    record_path(recorder, left, scratch, 1, dy, volumes[2], dy < 0);
+    record_path(recorder, left, scratch, -1, dy, volumes[3], dy < 0);
   }
-  record_winners(recorder, left, p2_least, scratch, out);
+  record_winners(recorder, left, scratch, out);
 }
 
 Size SemiGlobal::groups_for_paths(int paths) const { return {(paths + paths_per_group_ - 1) / paths_per_group_, 1}; }
 
-void SemiGlobal::record_path(Recorder& recorder, BufferView<std::uint32_t> left, const Buffer& p2_least, const Scratch& scratch,
-                             int dx, int dy, const Buffer& volume, bool adds) const {
+void SemiGlobal::record_path(Recorder& recorder, BufferView<std::uint32_t> left, const Scratch& scratch, int dx, int dy,
+                             const Buffer& volume, bool adds) const {
   const Size size = scratch.size_;
   const SemiGlobalPathPush push{
-      left.plane, size.width, size.height, scratch.words_, params_.p1, params_.p2, params_.p2_gradient, dx, dy, adds};
-  recorder.dispatch(path_, push, {reads(scratch.costs_), reads(left), writes(volume), reads(p2_least)},
+      left.plane, size.width, size.height, scratch.words_, params_.p1, params_.p2, params_.p2_least, params_.p2_gradient,
+      dx,         dy,         adds};
+  recorder.dispatch(path_, push, {reads(scratch.costs_), reads(left), writes(volume)},
                     groups_for_paths(dy == 0 ? size.height : size.width));
 }
 
-void SemiGlobal::record_winners(Recorder& recorder, BufferView<std::uint32_t> left, const Buffer& p2_least,
-                                const Scratch& scratch, const Match& out) const {
+void SemiGlobal::record_winners(Recorder& recorder, BufferView<std::uint32_t> left, const Scratch& scratch,
+                                const Match& out) const {
   const Size size = scratch.size_;
   const bool wants_margin = !out.margin.absent();
-  const SemiGlobalPush push{left.plane, out.right.plane, size.width,          size.height, scratch.words_,
-                            params_.p1, params_.p2,      params_.p2_gradient, wants_margin};
+  const SemiGlobalPush push{left.plane, out.right.plane, size.width,       size.height,         scratch.words_,
+                            params_.p1, params_.p2,      params_.p2_least, params_.p2_gradient, wants_margin};
   const auto volume = [&](std::size_t i) { return reads(scratch.volumes_[std::min(i, scratch.volumes_.size() - 1)]); };
   recorder.dispatch(winners_, push,
                     {reads(scratch.costs_), reads(left), volume(0), volume(1), volume(2), volume(3), writes(scratch.found_),
-                     writes(out.right), reads(p2_least)},
+                     writes(out.right)},
                     groups_for_paths(size.height));
   const SemiGlobalFinePush fine{out.left.plane, out.fine.plane, out.margin.plane, size.width,
                                 size.height,    max_disparity_, wants_margin};

@@ -32,15 +32,14 @@ class SemiGlobal {
   };
   /// max_disparity 1 .. 256.
   static Result<SemiGlobal> make(const Device& device, int max_disparity, const SemiGlobalParams& params);
-  /// `left` and `right` hold planes as vk::MatchPlanes packs them; `p2_least` a word, which counts in place of the parameter.
-  void record(Recorder& recorder, BufferView<std::uint32_t> left, BufferView<std::uint32_t> right, const Buffer& p2_least,
-              const Scratch& scratch, const Match& out, Size size) const;
+  /// `left` and `right` hold planes as vk::MatchPlanes packs them.
+  void record(Recorder& recorder, BufferView<std::uint32_t> left, BufferView<std::uint32_t> right, const Scratch& scratch,
+              const Match& out, Size size) const;
 
  private:
-  void record_path(Recorder& recorder, BufferView<std::uint32_t> left, const Buffer& p2_least, const Scratch& scratch, int dx,
-                   int dy, const Buffer& volume, bool adds) const;
-  void record_winners(Recorder& recorder, BufferView<std::uint32_t> left, const Buffer& p2_least, const Scratch& scratch,
-                      const Match& out) const;
+  void record_path(Recorder& recorder, BufferView<std::uint32_t> left, const Scratch& scratch, int dx, int dy,
+                   const Buffer& volume, bool adds) const;
+  void record_winners(Recorder& recorder, BufferView<std::uint32_t> left, const Scratch& scratch, const Match& out) const;
   /// Workgroups for so many paths.
   Size groups_for_paths(int paths) const;
 

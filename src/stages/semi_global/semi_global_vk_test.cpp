@@ -70,11 +70,7 @@ struct Planes {
 
 void expect_agrees(vk::Device& device, vk::Recorder& recorder, const SemiGlobalCase& c, const std::string& where) {
   std::mt19937 rng(31);
-  SemiGlobalParams made_with = c.params;
-  made_with.p2_least = made_with.p2;  // the word in the buffer counts
-  const auto stage = must(vk::SemiGlobal::make(device, c.max_disparity, made_with));
-  const std::int32_t least = c.params.p2_least;
-  const auto p2_least = must(vk::make_filled(device, "p2 least", std::as_bytes(std::span(&least, 1))));
+  const auto stage = must(vk::SemiGlobal::make(device, c.max_disparity, c.params));
   const auto scratch = must(vk::SemiGlobal::Scratch::make(device, c.size, c.max_disparity, c.params));
   for (int frame = 0; frame < 2; ++frame) {  // the second must not see anything of the first
     const Planes planes(c, rng);
@@ -91,8 +87,8 @@ void expect_agrees(vk::Device& device, vk::Recorder& recorder, const SemiGlobalC
     vk::SemiGlobal::Match match{got_left.view(), got_right.view(), got_fine.view()};
     if (c.margin) match.margin = got_margin.view();
     test::run_with(
-        recorder, [&] { stage.record(recorder, l.view(), r.view(), p2_least, scratch, match, c.size); }, l, r, got_left,
-        got_right, got_fine, got_margin);
+        recorder, [&] { stage.record(recorder, l.view(), r.view(), scratch, match, c.size); }, l, r, got_left, got_right,
+        got_fine, got_margin);
     const std::string what =
         "semi_global N " + std::to_string(c.max_disparity) + " paths " + std::to_string(c.params.paths()) + where;
     if (!test::expect_same<std::int16_t>(left, got_left.pixels(what), what + " left") ||
