@@ -33,7 +33,7 @@ struct SinkOptions {
 
   SinkOptions() : targets(sink_kinds().size()) {}
   void add_to(CLI::App& app);
-  /// An output shows the whole frame, not people alone.
+  /// An output draws or writes maps, so that frames must have them.
   bool wants_maps() const;
   /// An output holds the depth of the whole picture.
   bool writes_depth() const;

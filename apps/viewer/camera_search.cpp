@@ -15,7 +15,9 @@ CameraSearch::CameraSearch(void (*on_news)()) {
       shared->found = std::move(found);
       shared->news.notify_all();
       if (stop.stop_requested()) break;
+      lock.unlock();
       on_news();
+      lock.lock();
       shared->news.wait_for(lock, stop, kSearchAgain, [] { return false; });
     }
     return {};

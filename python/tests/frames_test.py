@@ -59,7 +59,7 @@ class Frames(unittest.TestCase):
 
     def test_people_are_the_tools(self):
         theirs, ours = self.folder / "theirs.jsonl", self.folder / "ours.jsonl"
-        self.assertEqual(tool("track", CLIP, "-o", theirs, "--csv", self.folder / "theirs.csv", "--quiet"), "")
+        self.assertEqual(tool("track", CLIP, "--whole", "-o", theirs, "--csv", self.folder / "theirs.csv", "--quiet"), "")
         frames = duoptic.open(CLIP, tracker="body")
         frames.add_sink(ours)
         frames.add_sink(self.folder / "ours.csv", axes="opencv")

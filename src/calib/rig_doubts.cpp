@@ -41,7 +41,8 @@ bool doubt_size(const Rig& rig, Doubts& doubts) {
   const auto [w, h] = rig.left.size;
   doubts.add(RigVerdict::kRecalibrate,
              "its camera matrices are of pictures of another size: both principal points lie in the middle of about {}x{}, "
-             "not of {}x{}; calibrate at {}x{}, or give the pictures and the size that they were calibrated at",
+             "not of {}x{}; unless the pictures are cropped, calibrate at {}x{}, or give the pictures and the size that they "
+             "were calibrated at",
              likely[0].width, likely[0].height, w, h, w, h);
   return true;
 }

@@ -249,7 +249,7 @@ void RigFitting::add(const std::shared_ptr<const Pair>& pair) {
   last_ = pair;
 }
 
-/// None: too few points agree, or all in one corner.
+/// None: too few points agree.
 std::optional<RigFit> RigFitting::by_matches(const SceneMatches& scene) const {
   if (one_picture(scene.matches)) return misfit("left and right are the same picture; give one of each camera");
   const auto matches = agreeing_matches(lenses_, scene);
@@ -267,7 +267,9 @@ std::optional<RigFit> RigFitting::by_matches(const SceneMatches& scene) const {
 std::optional<RigFit> RigFitting::by_first(const std::shared_ptr<const Pair>& pair) {
   if (auto known = fit_by_numbers(rig_, size_)) return known;
   const auto sure = [&](const std::optional<RigFit>& fit) { return fit && (surely_good(rig_, *fit) || surely_wrong(*fit)); };
-  if (auto fit = by_matches(match_pair(*pair, threads_, SceneSearch::kQuick)); sure(fit)) return fit;
+  // What is said without a judged scene needs more points than a quick search finds.
+  if (auto fit = by_matches(match_pair(*pair, threads_, SceneSearch::kQuick)); sure(fit) && (fit->scene || fit->what.empty()))
+    return fit;
   add(pair);
   auto fit = by_matches(matcher_->matches());
   return sure(fit) ? fit : std::nullopt;
@@ -275,7 +277,7 @@ std::optional<RigFit> RigFitting::by_first(const std::shared_ptr<const Pair>& pa
 
 RigFit RigFitting::by_all(std::span<const std::shared_ptr<const Pair>> others) {
   for (const auto& pair : others) add(pair);
-  if (!matcher_) return untold(rig_);
+  if (!matcher_ || !last_) return untold(rig_);
   const SceneMatches scene = matcher_->matches();
   if (auto fit = by_matches(scene)) return *fit;
   std::string why = why_apart(scene, *last_, threads_);

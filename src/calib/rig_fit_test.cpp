@@ -218,29 +218,27 @@ TEST(RigFit, KnownCausesAreNamed) {
 
 /// In pictures of few pixels, too; there, and where a rig does not know of it, by postures that are undone.
 TEST(RigFit, APictureThatIsTurnedOverOrANegative) {
-  for (const std::uint32_t seed : {1u}) {
-    SCOPED_TRACE(seed);
-    const Image<Rgb8>&left = fit_room(seed).pair.left.pixels, &right = fit_room(seed).pair.right.pixels;
-    const Image<Rgb8> small_left = small_copy(left), small_right = small_copy(right);
-    const std::optional<Rig> rig = fit_room(seed).rig;
-    Rig small_rig = *rig;
-    small_rig.left = small_camera(rig->left), small_rig.right = small_camera(rig->right);
-    expect_good(rig_fit(small_rig, pairs_of(small_left, small_right), 2));
-    expect_told(rig_fit(rig, pairs_of(left, right, negative_of, as_it_is), 2), "negative");
-    expect_told(rig_fit({}, pairs_of(left, right, as_it_is, bottom_to_top), 2), "rows from bottom to top");
-    for (const std::optional<Rig>& of : {std::optional(small_rig), std::optional<Rig>()}) {
-      SCOPED_TRACE(of.has_value());
-      expect_told(rig_fit(of, pairs_of(small_left, small_right, as_it_is, negative_of), 2), "negative");
-      expect_told(rig_fit(of, pairs_of(small_left, small_right, as_it_is, upside_down), 2), "stands on its head");
-      expect_told(rig_fit(of, pairs_of(small_left, small_right, mirror_of, as_it_is), 2), "one picture is mirrored");
-    }
-    expect_told(rig_fit(right_turned(small_rig, turn(1, 0, 0)), pairs_of(small_left, small_right), 2), "does not fit");
-    // Too few points agree here to judge a rig by.
-    const Image<Rgb8> dark_left = dark_copy(small_left), dark_right = dark_copy(small_right);
-    expect_good(rig_fit({}, pairs_of(dark_left, dark_right), 2));
-    expect_told(rig_fit({}, pairs_of(dark_left, dark_right, as_it_is, upside_down), 2), "stands on its head");
-    expect_told(rig_fit({}, pairs_of(dark_left, dark_right, negative_of, as_it_is), 2), "negative");
+  constexpr std::uint32_t kSeed = 1;
+  const Image<Rgb8>&left = fit_room(kSeed).pair.left.pixels, &right = fit_room(kSeed).pair.right.pixels;
+  const Image<Rgb8> small_left = small_copy(left), small_right = small_copy(right);
+  const std::optional<Rig> rig = fit_room(kSeed).rig;
+  Rig small_rig = *rig;
+  small_rig.left = small_camera(rig->left), small_rig.right = small_camera(rig->right);
+  expect_good(rig_fit(small_rig, pairs_of(small_left, small_right), 2));
+  expect_told(rig_fit(rig, pairs_of(left, right, negative_of, as_it_is), 2), "negative");
+  expect_told(rig_fit({}, pairs_of(left, right, as_it_is, bottom_to_top), 2), "rows from bottom to top");
+  for (const std::optional<Rig>& of : {std::optional(small_rig), std::optional<Rig>()}) {
+    SCOPED_TRACE(of.has_value());
+    expect_told(rig_fit(of, pairs_of(small_left, small_right, as_it_is, negative_of), 2), "negative");
+    expect_told(rig_fit(of, pairs_of(small_left, small_right, as_it_is, upside_down), 2), "stands on its head");
+    expect_told(rig_fit(of, pairs_of(small_left, small_right, mirror_of, as_it_is), 2), "one picture is mirrored");
   }
+  expect_told(rig_fit(right_turned(small_rig, turn(1, 0, 0)), pairs_of(small_left, small_right), 2), "does not fit");
+  // Too few points agree here to judge a rig by.
+  const Image<Rgb8> dark_left = dark_copy(small_left), dark_right = dark_copy(small_right);
+  expect_good(rig_fit({}, pairs_of(dark_left, dark_right), 2));
+  expect_told(rig_fit({}, pairs_of(dark_left, dark_right, as_it_is, upside_down), 2), "stands on its head");
+  expect_told(rig_fit({}, pairs_of(dark_left, dark_right, negative_of, as_it_is), 2), "negative");
 }
 
 TEST(RigFit, BothPicturesOnTheirSide) {

@@ -60,7 +60,7 @@ void FocusMaps::cut(const FocusPart& part, const Frame& frame, View<const std::u
 void FocusMaps::put(const FocusPart& part, Frame& frame) const {
   const Window &kept = part.kept, &matched = part.matched;
   const auto added = static_cast<std::uint16_t>(part.first_disparity * kStep_q4);
-  frame.matched = kept;
+  frame.matched = kept == Window::all(frame.disparity.d_q4.size()) ? Window{} : kept;
   for (int y = 0; y < frame.disparity.d_q4.height(); ++y) {
     std::uint16_t* const d = frame.disparity.d_q4.row(y);
     std::fill_n(d, frame.disparity.d_q4.width(), Disparity::kNone);

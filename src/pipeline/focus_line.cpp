@@ -36,7 +36,7 @@ Focus around(std::span<const Person> people, const Rectified& rectified, double 
 }
 
 void FocusLine::tell(std::span<const Person> people, TimeNs t_ns) {
-  constexpr double kIntervals = 2, kMost_s = 1;  // until the pair that this is for is taken, and until the next one
+  constexpr double kIntervals = 2, kMost_s = 1;  // one until the pair is taken, one until the next comes
   const double interval_s = static_cast<double>(t_ns - last_ns_.value_or(t_ns)) * 1e-9;
   last_ns_ = t_ns;
   const Focus focus = around(people, rectified_, std::max(ahead_s_, std::min(kIntervals * interval_s, kMost_s)));
@@ -53,12 +53,15 @@ Focus FocusLine::next() {
   const std::int64_t pair = asked_++;
   if (pair % kWholeEvery == kFirstWhole || frame < 0) return {};
   news_.wait(lock, [&] { return closed_ || told_ > frame; });
-  return closed_ || pair == anew_ ? Focus() : ring_[static_cast<std::size_t>(frame) % ring_.size()];
+  return closed_ || pair == whole_pair_ ? Focus() : ring_[static_cast<std::size_t>(frame) % ring_.size()];
 }
 
 void FocusLine::forget() {
   const std::lock_guard lock(mutex_);
-  anew_ = live_ ? asked_ : told_ + kBehind;
+  if (!live_)
+    whole_pair_ = told_ + kBehind;
+  else if (told_ > 0)
+    ring_[static_cast<std::size_t>(told_ - 1) % ring_.size()] = {};
 }
 
 void FocusLine::close() {

@@ -48,7 +48,7 @@ class FocusLine {
   std::mutex mutex_;  // of what follows
   std::condition_variable news_;
   std::array<Focus, kBehind + 1> ring_;
-  std::int64_t told_ = 0, asked_ = 0, anew_ = -1;  // anew_: a pair that is matched as a whole
+  std::int64_t told_ = 0, asked_ = 0, whole_pair_ = -1;  // whole_pair_: a pair that is matched as a whole
   bool closed_ = false;
   std::optional<TimeNs> last_ns_;  // of who tells
 };

@@ -97,7 +97,8 @@ TEST(FocusLine, ForgetsPeople) {
   FocusLine live(plain_rig(), 1.0 / 30, true);
   live.tell({&person, 1}, 0);
   live.forget();
-  EXPECT_TRUE(live.next().window.empty());
+  for (int n = 0; n < 2; ++n) EXPECT_TRUE(live.next().window.empty()) << n;
+  live.tell({&person, 1}, 0);
   EXPECT_FALSE(live.next().window.empty());
   // Of files pair 6 was free to go once frame 3 was told: pair 7 is the first that can know.
   FocusLine files(plain_rig(), 1.0 / 30, false);

@@ -23,8 +23,8 @@ void take_grid(View<const Rgb8> picture, std::vector<std::uint8_t>& into) {
 Change change_of(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now) {
   constexpr int kStep = 16;            // levels: above the noise of cameras and of coding
   constexpr std::size_t kShare = 200;  // one of so many pixels: an arm, a head
-  constexpr std::size_t kQuiet =
-      4;  // levels' inverse, in the mean: what coding a picture again changes; cameras' noise is more
+  constexpr std::size_t kStill = 8 * kShare;
+  constexpr std::size_t kQuiet = 4;  // a quarter of a level in the mean, by coding anew; cameras' noise is more
   if (before.size() != now.size()) return Change::kLittle;  // the first
   std::size_t steps = 0, sum = 0;
   for (std::size_t i = 0; i < now.size(); ++i) {
@@ -32,8 +32,16 @@ Change change_of(const std::vector<std::uint8_t>& before, const std::vector<std:
     sum += static_cast<std::size_t>(by);
     steps += by > kStep;
   }
-  if (sum * kQuiet <= now.size() && steps * kShare * 8 <= now.size()) return Change::kNone;
+  if (sum * kQuiet <= now.size() && steps * kStill <= now.size()) return Change::kNone;
   return steps * kShare >= now.size() ? Change::kMotion : Change::kLittle;
+}
+
+/// A covered lens, a picture without light: it looks the same however it was taken.
+bool is_flat(const std::vector<std::uint8_t>& grid) {
+  constexpr int kFlat = 16;  // levels
+  if (grid.empty()) return true;
+  const auto [least, most] = std::minmax_element(grid.begin(), grid.end());
+  return *most - *least <= kFlat;
 }
 
 }  // namespace
@@ -42,7 +50,7 @@ void RepeatWatch::see(const Pair& pair) {
   std::array<Change, 2> changes{};
   for (std::size_t i = 0; i < 2; ++i) {
     take_grid((i == 0 ? pair.left : pair.right).pixels.view(), now_);
-    changes[i] = change_of(sides_[i].before, now_);
+    changes[i] = is_flat(now_) ? Change::kLittle : change_of(sides_[i].before, now_);
     std::swap(sides_[i].before, now_);
   }
   moved_ += changes[0] == Change::kMotion || changes[1] == Change::kMotion;
@@ -64,12 +72,13 @@ std::string RepeatWatch::warning(bool live) const {
     const Side& side = sides_[i];
     if (live && side.in_a_row >= kHangs)
       return fmt::format(
-          "the {} camera hangs: its pictures stay the same while the {} one's move; depth of what moves is wrong", kSides[i],
-          kSides[1 - i]);
+          "the {} camera's pictures stay the same while the {} one's move: it hangs, and depth of what moves is wrong, or it "
+          "sees nothing of what moves",
+          kSides[i], kSides[1 - i]);
     if (!live && side.repeated >= std::max<double>(kFewest, kShare * moved_))
       return fmt::format(
-          "{} of the {} pictures are the same as the one before, up to {} in a row, while the {} ones move: its "
-          "camera was slower or hung; depth of what moves is wrong there",
+          "{} of the {} pictures are the same as the one before, up to {} in a row, while the {} ones move: its camera was "
+          "slower or hung, and depth of what moves is wrong there, or it saw nothing of what moves",
           side.repeated, kSides[i], side.most_in_a_row, kSides[1 - i]);
   }
   return {};

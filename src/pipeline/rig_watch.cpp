@@ -53,8 +53,8 @@ void RigWatch::start(Step step, std::function<std::optional<RigFit>()> judge) {
   const std::string what = "see whether the rig fits";
   if (auto worker = Worker::start(what, work))
     worker_ = std::move(*worker);
-  else
-    static_cast<void>(without_exceptions(what, [&] { return work({}); }));
+  else if (!without_exceptions(what, [&] { return work({}); }))
+    *found_ = RigFit();
 }
 
 /// Whether what the worker found counts from now on.
@@ -65,7 +65,7 @@ bool RigWatch::is_known(TimeNs since_ns, TimeNs of_files_ns) {
 /// What the worker found. Whether it is news.
 bool RigWatch::take() {
   const bool by_first = step_ == Step::kFirst;
-  if (worker_.started() && !std::exchange(worker_, {}).join()) found_->reset();
+  if (worker_.started() && !std::exchange(worker_, {}).join()) *found_ = RigFit();  // it had no memory: nothing is found
   step_ = by_first && !*found_ ? Step::kGather : Step::kDone;
   if (step_ == Step::kGather) return false;
   others_.clear();

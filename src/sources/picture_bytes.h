@@ -24,8 +24,8 @@ bool is_jpeg_sequence(std::string_view bytes);
 /// phones are no views.
 std::vector<std::string_view> views_of_mpo(std::string_view bytes);
 
-/// How many pictures a TIFF (its smaller copies do not count), a PNG (moving ones) or a binary PNM holds one after the other; 1
-/// of other kinds, and where it cannot be told.
+/// How many pictures a TIFF (its smaller copies do not count), a PNG (moving ones) or a PNM (P5, P6) holds one after the other;
+/// 1 of other kinds, and where it cannot be told.
 int pictures_held(std::string_view bytes);
 
 /// The orientation that a JPEG, PNG, WebP or TIFF asks for.

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kNear_m = kAnyDepth.near_m, kFar_m = kAnyDepth.far_m;
 constexpr double kSeenDrift = 0.9, kHiddenDrift = 0.6;  // share of its step that a joint keeps
+constexpr double kLongestStep_m = 0.2;
 constexpr double kReachBefore_m = 0.95, kReachBehind_m = 0.6;
 
 double length(Vec2 a, Vec2 b) { return std::sqrt(square(a.x - b.x) + square(a.y - b.y)); }
@@ -61,8 +62,13 @@ Vec3 Body::expected_trunk() const {
 }
 
 void Body::stretch_step(double times) {
-  pace_ = times * pace_;
-  for (const JointId id : kFreeJoints) states_[id].step = times * states_[id].step;
+  if (age_ < 2) return;  // one frame shows no speed
+  const auto stretched = [&](Vec3 step) {
+    const double now = times * norm(step);
+    return (now > kLongestStep_m ? kLongestStep_m / now * times : times) * step;
+  };
+  pace_ = stretched(pace_);
+  for (const JointId id : kFreeJoints) states_[id].step = stretched(states_[id].step);
 }
 
 TurnedSquare Body::expected_region(const FrameView& frame) const {
@@ -160,7 +166,8 @@ void Body::detect(const FrameView& frame, const SeenBody& seen, const Hands& han
   constexpr double kMostStep_m = 0.06, kGate_m = 0.35;
   const double found =
       trunk_depth(frame.depth, corners_of(seen), {std::max(trunk_z_m_ - kGate_m, kNear_m), trunk_z_m_ + kGate_m});
-  if (found > 0) trunk_z_m_ += std::clamp(found - trunk_z_m_, -kMostStep_m * (1 + missed_), kMostStep_m * (1 + missed_));
+  const double most_m = kMostStep_m * std::max(1.0, 30 * frame.frame_s) * (1 + missed_);
+  if (found > 0) trunk_z_m_ += std::clamp(found - trunk_z_m_, -most_m, most_m);
   scene.trunk_z_m = trunk_z_m_;
   region_ = seen.next;
   region_from_px_ = centre_of(corners_of(seen));
@@ -205,7 +212,7 @@ void Body::lift(Scene& scene) const {
 }
 
 void Body::update(const FrameView& frame, const Scene& scene, const Choices& chosen) {
-  constexpr double kStepGain = 0.5, kLongestStep_m = 0.2, kFar_off_m = 0.12, kFar_off_px = 6, kTooFar_m = 0.15;
+  constexpr double kStepGain = 0.5, kFar_off_m = 0.12, kFar_off_px = 6, kTooFar_m = 0.15;
   constexpr int kSights = 2, kUnsureSights = 6;
   int inside = 0, seen = 0;
   ++age_;

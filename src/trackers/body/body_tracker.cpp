@@ -281,9 +281,11 @@ void BodyTracker::look_at_hands() {
 
 double BodyTracker::time_since_last(const Frame& frame) {
   constexpr double kMost_s = 0.99;
-  const double frames = frame_ == 0 ? 1 : std::round(static_cast<double>(frame.t_ns - last_ns_) * 1e-9 / setup_.frame_s);
+  constexpr double kJitter = 0.25;  // of a frame: what is as near to whole frames is whole frames
+  double frames = frame_ == 0 ? 1 : static_cast<double>(frame.t_ns - last_ns_) * 1e-9 / setup_.frame_s;
+  if (std::abs(frames - std::round(frames)) < kJitter) frames = std::round(frames);
   const double step_s = setup_.frame_s * std::clamp(frames, 1.0, std::max(std::floor(kMost_s / setup_.frame_s), 1.0));
-  if (step_s != last_step_s_ && frame_ > 1)  // one frame shows no speed
+  if (step_s != last_step_s_)
     for (Tracked& each : tracked_) each.body.stretch_step(step_s / last_step_s_);
   last_ns_ = frame.t_ns;
   last_step_s_ = step_s;
