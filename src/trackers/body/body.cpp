@@ -360,7 +360,7 @@ void Body::publish(const FrameView& frame, Person& person) const {
     const double k = square(hand ? kHandScale : kScale), floor = square(kFloor_m);
     const double mark = is_hip(id) ? square(kHipMark_m) : 0;
     joint.cov_m2 = {k * c.xx + floor, k * c.xy, k * c.xz, k * c.yy + floor + mark, k * c.yz, k * c.zz + floor};
-    joint.v_in_rig_m_s = (1 / frame.frame_s) * step;
+    if (age_ > 1) joint.v_in_rig_m_s = (1 / frame.frame_s) * step;  // what the first fit corrects is no speed
     joint.state = joint.sigma_m() > (hand ? kHandLost_m : kLost_m) ? JointState::kLost : state;
     joint.confidence = joint.state == JointState::kLost ? 0 : 1 / (1 + square(joint.sigma_m() / 0.1));
   };

@@ -88,6 +88,15 @@ TEST(BodyTracker, KnowsTheTimeOfFramesThatWereLeftOut) {
   EXPECT_GT(fastest_m_s, 0.1);
 }
 
+/// What the first fit corrects was published as speed once, two metres a second of somebody who stands.
+TEST(BodyTracker, OneFrameShowsNoSpeed) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  const auto people = tracker->track(*person.frames[0]);
+  ASSERT_EQ(people.size(), 1U);
+  for (const Joint& joint : people[0].joints) EXPECT_EQ(norm(joint.v_in_rig_m_s), 0);
+}
+
 TEST(BodyTracker, OneAndTwoThreadsGiveTheSameBits) {
   const RenderedPerson& person = RenderedPerson::get();
   const auto one = body_tracker(person.rig, person.rectified, 1), two = body_tracker(person.rig, person.rectified, 2);
