@@ -34,8 +34,9 @@ struct SceneHealth {
   int pairs = 0, points = 0;  // pictures looked at, points that agree with each other
   double covered = 0;         // share of the picture that has points, 0 .. 1
   std::string missing;        // parts that have none, in words; empty when all have
-  double row_px = 0;  // difference of rows that is no noise: root mean square of medians in parts of the picture but the worst
-  double lens_row_px = 0;  // what of it no turn of the cameras takes away: the lenses, or the zoom, are others
+  double row_px = 0;          // difference of rows that is no noise: of medians in parts of the picture, of four or more
+                              // without the worst, root mean square
+  double lens_row_px = 0;     // what of it no turn of the cameras takes away: the lenses, or the zoom, are others
   double row_median_px = 0, row_p95_px = 0;  // of single points, noise and wrong matches included
   Vec3 turned_rad, turned_sigma_rad;         // how the right camera is turned from where the rig has it, around its x, y, z
   double pan_px = 0, pan_sigma_px = 0;       // what of that shifts all disparities, at the focal length

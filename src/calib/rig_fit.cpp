@@ -116,8 +116,8 @@ std::string why_rows_differ(const std::vector<SceneMatch>& matches, int height) 
   }
   if (static_cast<double>(most) > kMost * static_cast<double>(rows_px.size())) return {};
   return fmt::format(
-      "the rows of both pictures do not fit: the same points lie {:.0f} to {:.0f} px lower in the right one, as no rectified "
-      "pair has them: give a rig; or one picture was zoomed, cropped or scaled",
+      "the rows of both pictures do not fit: in the right one the same points lie {:+.0f} to {:+.0f} px away (+: lower), as in "
+      "no rectified pair: give a rig; or one picture was zoomed, cropped or scaled, or a camera is turned",
       rows_px[rows_px.size() / 20], rows_px[rows_px.size() - 1 - rows_px.size() / 20]);
 }
 

@@ -88,7 +88,7 @@ TEST(BodyTracker, KnowsTheTimeOfFramesThatWereLeftOut) {
   EXPECT_GT(fastest_m_s, 0.1);
 }
 
-/// What the first fit corrects was published as speed once, two metres a second of somebody who stands.
+/// What the first fit corrects, up to two metres per second of somebody who stands, is no speed.
 TEST(BodyTracker, OneFrameShowsNoSpeed) {
   const RenderedPerson& person = RenderedPerson::get();
   const auto tracker = body_tracker(person.rig, person.rectified, 1);
