@@ -55,12 +55,14 @@ class Record : public ::testing::Test {
   static Ended run(const std::string& arguments, const std::string& before = "") {
     return test::run_tool(at(""), arguments, before);
   }
-  /// A gst-launch-1.0 for the tool: black pictures at 50 a second for a second, then nothing, and it does not end.
+  /// A gst-launch-1.0 for the tool: black pictures at 50 a second for half a second, then nothing, and it does not end. Its two
+  /// sources stay silent when they are opened again, however late that is.
   static std::string with_camera_that_falls_silent() {
     put(at("gst-launch-1.0"),
-        "#!/bin/sh\nprintf 'YUV4MPEG2 W16 H16 F50:1 Ip A1:1 C444\\n'\n"
-        "for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 "
-        "40; do\n"
+        "#!/bin/sh\necho start >> \"$0.starts\"\n"
+        "[ $(wc -l < \"$0.starts\") -le 2 ] || exec sleep 1000\n"
+        "printf 'YUV4MPEG2 W16 H16 F50:1 Ip A1:1 C444\\n'\n"
+        "for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do\n"
         "  printf 'FRAME\\n'; head -c 768 /dev/zero; sleep 0.02\ndone\nexec sleep 1000\n");
     fs::permissions(at("gst-launch-1.0"), fs::perms::owner_all);
     return "PATH='" + at("").string() + "':$PATH";
