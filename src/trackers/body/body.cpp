@@ -7,7 +7,7 @@
 namespace duo::body {
 namespace {
 
-constexpr double kNear_m = kAnyDepth.near_m, kFar_m = kAnyDepth.far_m;
+constexpr double kNear_m = kAnyDepth.near_m;
 constexpr double kSeenDrift = 0.9, kHiddenDrift = 0.6;  // share of its step that a joint keeps
 constexpr double kLongestStep_m = 0.2;
 constexpr double kReachBefore_m = 0.95, kReachBehind_m = 0.6;
@@ -21,6 +21,18 @@ DepthRange around(double trunk_z) { return {std::max(trunk_z - kReachBefore_m, k
 bool is_end_on(const Places& places, const Limb& arm, const Lengths& lengths) {
   constexpr double kAway = 0.5;  // of its length: turned by more than 30 degrees
   return places[arm[2]].z - places[arm[1]].z > kAway * lengths[Bone::kForearm];
+}
+
+/// How far a trunk in the picture is turned from another, 0 .. 2; 0 where one of them is too short to tell.
+double turned_away(const TrunkCorners& a, const TrunkCorners& b, double least_px) {
+  const auto down = [](const TrunkCorners& c) {
+    const Vec2 up = mean(c[0], c[1]), hips = mean(c[2], c[3]);
+    return Vec2{hips.x - up.x, hips.y - up.y};
+  };
+  const Vec2 p = down(a), q = down(b);
+  const double lengths = length(p, {}) * length(q, {});
+  if (length(p, {}) < least_px || length(q, {}) < least_px) return 0;
+  return 1 - (p.x * q.x + p.y * q.y) / lengths;
 }
 
 /// A hand that its network found far from where the body's network has it is another one.
@@ -101,6 +113,7 @@ Window Body::expected_box(const FrameView& frame) const {
 
 double Body::unlike(const FrameView& frame, const SeenBody& seen) const {
   constexpr double kNear = 0.6, kNear_depth_m = 0.25, kColor = 0.08, kBright = 0.35, kMostOther = 4;
+  constexpr double kTurned = 0.3, kLeastTrunk = 0.5;  // by 45 degrees; of the trunk's length
   const auto corners = corners_of(seen);
   const Vec3 expected = expected_trunk();
   const double z = std::max(expected.z, kNear_m);
@@ -114,7 +127,16 @@ double Body::unlike(const FrameView& frame, const SeenBody& seen) const {
   if (color.known && color_.known)
     other = (square(color.red - color_.red) + square(color.green - color_.green)) / square(kColor) +
             square((color.bright - color_.bright) / kBright);
-  return std::sqrt(square(off) + square(deep) + std::min(other, kMostOther) / 4);
+  // Nobody lies down from one frame to the next.
+  TrunkCorners ahead;
+  constexpr std::array kCorners = {JointId::kLeftShoulder, JointId::kRightShoulder, JointId::kLeftHip, JointId::kRightHip};
+  for (std::size_t i = 0; i < ahead.size(); ++i) {
+    const Vec3 p = fitted_.places[kCorners[i]];
+    ahead[i] = frame.depth.geometry->project({p.x, p.y, std::max(p.z, kNear_m)});
+  }
+  const double turned =
+      turned_away(ahead, corners, kLeastTrunk * lengths_[Bone::kTrunk] * frame.depth.px_per_m(z)) / (kTurned * aside);
+  return std::sqrt(square(off) + square(deep) + square(turned) + std::min(other, kMostOther) / 4);
 }
 
 void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hands, std::span<const Places* const> nearer) {
@@ -169,6 +191,7 @@ void Body::detect(const FrameView& frame, const SeenBody& seen, const Hands& han
   const double most_m = kMostStep_m * std::max(1.0, 30 * frame.frame_s) * (1 + missed_);
   if (found > 0) trunk_z_m_ += std::clamp(found - trunk_z_m_, -most_m, most_m);
   scene.trunk_z_m = trunk_z_m_;
+  if (!stands_out(frame.depth, corners_of(seen))) ++flat_frames_;
   region_ = seen.next;
   region_from_px_ = centre_of(corners_of(seen));
   color_.learn(color_of(frame, corners_of(seen)));

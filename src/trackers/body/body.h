@@ -45,6 +45,8 @@ class Body {
   int missed() const { return missed_; }
   /// Of the joints that are marked in the picture, how many were seen when it was tracked last.
   double seen_share() const { return seen_share_; }
+  /// Frames in which the trunk did not stand out of what is beside it, as a picture on a wall does not.
+  int flat_frames() const { return flat_frames_; }
   /// Depth of the trunk's skin.
   double trunk_z_m() const { return trunk_z_m_; }
   /// Whether the last frame showed a hand to its network, where the body has it.
@@ -85,7 +87,7 @@ class Body {
   double trunk_z_m_ = 0;
   Vec3 pace_;  // of the trunk's middle from frame to frame, as it walks
   double seen_share_ = 0;
-  int missed_ = 0, age_ = 0;
+  int missed_ = 0, age_ = 0, flat_frames_ = 0;
 };
 
 }  // namespace duo::body

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/allocations.h"
+#include "trackers/body/body.h"
 #include "trackers/body/rendered_person.h"
+#include "trackers/body/standing.h"
 
 namespace duo {
 namespace {
@@ -34,6 +36,69 @@ TEST(BodyNewcomers, WhoWasSeenOnceIsForgottenSoon) {
   EXPECT_EQ(frames_until_forgotten(1), 15);
   EXPECT_EQ(frames_until_forgotten(kFrames - 1), 15);
   EXPECT_EQ(frames_until_forgotten(kFrames), 75);
+}
+
+int seen_joints(const Person& person) {
+  int count = 0;
+  for (std::size_t j = 0; j < person.count(); ++j) count += person.joints[j].state == JointState::kSeen;
+  return count;
+}
+
+TEST(BodyNewcomers, WhoComesLaterIsSeenFromTheThirdFrameOn) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  const Frame dark = dark_frame();
+  EXPECT_TRUE(tracker->track(dark).empty());
+  constexpr int kSearches = 8;  // until every part of the picture was looked at
+  int tried = 0;
+  auto people = tracker->track(*person.frames[0]);
+  for (; people.empty() && tried < kSearches; ++tried) people = tracker->track(*person.frames[0]);
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_EQ(people.size(), 1u) << i;
+    EXPECT_EQ(seen_joints(people[0]) > 8, i >= 2) << i;
+    people = tracker->track(*person.frames[static_cast<std::size_t>(i) + 1]);
+  }
+}
+
+/// Once started, it turns into a picture on a wall: one plane through the person's depth.
+TEST(BodyNewcomers, WhoDoesNotStandOutIsDropped) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  ASSERT_EQ(tracker->track(*person.frames[0]).size(), 1u);
+  constexpr std::uint16_t kPlane_q4 = 290;
+  for (int i = 1; i < 8; ++i) {
+    Frame flat = copy_of(*person.frames[static_cast<std::size_t>(i)]);
+    for (int y = 0; y < flat.disparity.d_q4.height(); ++y)
+      for (int x = 0; x < flat.disparity.d_q4.width(); ++x) flat.disparity.d_q4.at(y, x) = kPlane_q4;
+    EXPECT_EQ(tracker->track(flat).size(), i < 4 ? 1u : 0u) << i;
+  }
+}
+
+/// A trunk around a place of the picture that points along `down`; nothing else of it is marked.
+SeenBody trunk_at(Vec2 centre, Vec2 down) {
+  SeenBody out;
+  const auto put = [&](BodyPoint point, double along, double across) {
+    SeenPoint& p = out.points[static_cast<std::size_t>(point)];
+    p.x_q8 = static_cast<std::int32_t>(256 * (centre.x + along * down.x + across * down.y));
+    p.y_q8 = static_cast<std::int32_t>(256 * (centre.y + along * down.y - across * down.x));
+    p.world_q16 = {static_cast<std::int32_t>(65536 * 0.465 * across), static_cast<std::int32_t>(65536 * 0.465 * along), 0};
+  };
+  using enum BodyPoint;
+  put(kLeftShoulder, -0.5, 0.37), put(kRightShoulder, -0.5, -0.37), put(kLeftHip, 0.5, 0.22), put(kRightHip, 0.5, -0.22);
+  return out;
+}
+
+TEST(BodyIdentity, WhoStandsIsUnlikeWhatLies) {
+  body::test::Map map;
+  map.fill({0, 0, 320, 240}, 4);
+  map.fill({100, 40, 120, 160}, 1.9);
+  const Image<Rgb8> picture({320, 240});
+  const body::FrameView frame{map.view(), picture, 1.0 / 30, BodyModel::kLite, {}};
+  const auto stands = body::Body::start(frame, trunk_at({160, 120}, {0, 93}));
+  ASSERT_TRUE(stands);
+  EXPECT_LT(stands->unlike(frame, trunk_at({160, 120}, {0, 93})), 0.5);
+  EXPECT_LT(stands->unlike(frame, trunk_at({160, 120}, {32, 88})), 1);  // bows by 20 degrees
+  EXPECT_GT(stands->unlike(frame, trunk_at({160, 120}, {93, 0})), 2.2);
 }
 
 TEST(BodyNewcomers, AllocateNothingFromTheSecondFrameOn) {

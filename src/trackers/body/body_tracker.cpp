@@ -49,6 +49,7 @@ class BodyTracker final : public Tracker {
     Uncover* uncover = nullptr;  // while somebody is before or behind this person
     bool covered = false;        // somebody is before
     int confirmed = 0;           // frames that showed enough of a new person
+    bool came_later = false;     // not in the first frame
     std::array<Fingers, 2> fingers = {Fingers(true), Fingers(false)};
   };
   /// A tracked person as this frame shows it.
@@ -73,7 +74,7 @@ class BodyTracker final : public Tracker {
   void look_elsewhere(const body::FrameView& frame, bool whole);
   void look_at_hands();
   /// Drops those who are gone, and who was taken for somebody by mistake: of a person some joints are seen in each of its first
-  /// ten frames.
+  /// ten frames, in most of which it stands out.
   void forget();
   void track_fingers(Tracked& who, const body::FrameView& frame, const Body::Hands& hands);
   void publish(const body::FrameView& frame);
@@ -306,8 +307,8 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
   match(view, seen);
   for (std::size_t i = 0; i < seen.size() && tracked_.size() < kMostPeople; ++i) {
     if (owners_[i] != nullptr || is_of_another(view, seen, i)) continue;
-    if (auto started = Body::start(view, seen[i].body); started && !newcomers_.was_refused(started->expected_trunk())) {
-      tracked_.push_back({next_id_++, std::move(*started), true, nullptr, false, 0});
+    if (auto started = Body::start(view, seen[i].body); started && !newcomers_.was_mistaken(started->expected_trunk())) {
+      tracked_.push_back({next_id_++, std::move(*started), true, nullptr, false, 0, frame_ > 0});
       owners_[i] = &tracked_.back();
     }
   }
@@ -339,13 +340,13 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
 }
 
 void BodyTracker::forget() {
-  constexpr int kForget = 75, kForgetNew = 15, kConfirm = 10;  // frames
+  constexpr int kForget = 75, kForgetNew = 15, kConfirm = 10, kMostFlat = 3;  // frames
   constexpr double kEnough = 1.0 / 3;
   std::erase_if(tracked_, [&](Tracked& each) {
     const int missed = each.body.missed();
     if (each.confirmed == kConfirm || each.covered) return missed > kForget;
-    if (each.body.seen_share() < kEnough) {
-      newcomers_.refuse(each.body.expected_trunk());
+    if (each.body.seen_share() < kEnough || each.body.flat_frames() > kMostFlat) {
+      newcomers_.add_mistake(each.body.expected_trunk());
       return true;
     }
     if (missed == 0) ++each.confirmed;
@@ -362,6 +363,7 @@ void BodyTracker::track_fingers(Tracked& who, const body::FrameView& frame, cons
 }
 
 void BodyTracker::publish(const body::FrameView& frame) {
+  constexpr int kBelieve = 3;  // frames
   people_.clear();
   const Mat3 left_from_rig = transposed(setup_.rectified.rig_from_left);
   for (const Tracked& each : tracked_) {
@@ -377,6 +379,8 @@ void BodyTracker::publish(const body::FrameView& frame) {
         joint.u_px = pixel->x;
         joint.v_px = pixel->y;
       }
+      // Of what is no person most is dropped before it is believed.
+      if (each.came_later && each.confirmed < kBelieve && joint.state == JointState::kSeen) joint.state = JointState::kInferred;
     }
     person.sum_up();
   }

@@ -8,6 +8,7 @@ namespace duo::body {
 namespace {
 
 constexpr double kSame_m = 0.4;
+constexpr std::int64_t kPatience = 6;  // calls until it is asked about again
 
 double across_floor(Vec3 a, Vec3 b) { return std::sqrt(square(a.x - b.x) + square(a.z - b.z)); }
 
@@ -42,16 +43,22 @@ std::optional<TurnedSquare> settle(Detector& detector, const FrameView& frame, c
 
 }  // namespace
 
-bool Newcomers::was_refused(Vec3 at) const {
-  return std::ranges::any_of(
-      refused_, [&](const Refused& each) { return each.until > call_ && across_floor(each.at, at) < kSame_m / 2; });
+void Newcomers::Places::add(Vec3 at, std::int64_t until) {
+  all[next] = {at, until};
+  next = (next + 1) % all.size();
 }
 
-void Newcomers::refuse(Vec3 at) {
-  constexpr std::int64_t kPatience = 6;  // calls until it is asked about again
-  refused_[next_refused_] = {at, call_ + kPatience};
-  next_refused_ = (next_refused_ + 1) % refused_.size();
+bool Newcomers::was_refused(Vec3 at) const {
+  const auto is_there = [&](const Place& each) { return each.until > call_ && across_floor(each.at, at) < kSame_m / 2; };
+  return std::ranges::any_of(things_.all, is_there) || std::ranges::any_of(mistakes_.all, is_there);
 }
+
+bool Newcomers::was_mistaken(Vec3 trunk) const {
+  return std::ranges::any_of(mistakes_.all,
+                             [&](const Place& each) { return each.until > call_ && norm(each.at - trunk) < kSame_m / 2; });
+}
+
+void Newcomers::add_mistake(Vec3 trunk) { mistakes_.add(trunk, call_ + kPatience); }
 
 std::optional<TurnedSquare> Newcomers::look(Detector& detector, const FrameView& frame, std::span<const Vec3> tracked) {
   ++call_;
@@ -65,7 +72,7 @@ std::optional<TurnedSquare> Newcomers::look(Detector& detector, const FrameView&
     std::optional<TurnedSquare> found;
     for (std::size_t i = 0; i < (upright.cut_above ? kAbove_m.size() : 1) && !found; ++i)
       found = settle(detector, frame, upright, upright.cut_above ? kAbove_m[i] : 0);
-    if (!found) refuse(at);
+    if (!found) things_.add(at, call_ + kPatience);
     return found;
   }
   return std::nullopt;

@@ -17,18 +17,25 @@ class Newcomers {
  public:
   /// Looks at one of them, the nearest first. `tracked`: the middles of trunks. Returns where a person is, for the next look.
   std::optional<TurnedSquare> look(Detector& detector, const FrameView& frame, std::span<const Vec3> tracked);
-  /// Whether what stands there was no person.
-  bool was_refused(Vec3 at) const;
-  void refuse(Vec3 at);
+  /// Whether somebody with the middle of the trunk there was a mistake. Where furniture stands, people may still be found.
+  bool was_mistaken(Vec3 trunk) const;
+  void add_mistake(Vec3 trunk);
 
  private:
-  struct Refused {
+  struct Place {
     Vec3 at;
     std::int64_t until = 0;  // calls
   };
+  /// The latest ones.
+  struct Places {
+    std::array<Place, 16> all;
+    std::size_t next = 0;
+    void add(Vec3 at, std::int64_t until);
+  };
+  bool was_refused(Vec3 at) const;
+
   Uprights uprights_;
-  std::array<Refused, 16> refused_;
-  std::size_t next_refused_ = 0;
+  Places things_, mistakes_;
   std::int64_t call_ = 0;
 };
 

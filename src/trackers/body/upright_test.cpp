@@ -147,5 +147,34 @@ TEST(Newcomers, WhatIsNoPersonIsLeftAloneForFiveCalls) {
   EXPECT_EQ(detector.asked, 5);
 }
 
+/// Somebody may stand where a thing is that is none; where somebody was a mistake, only a trunk elsewhere is another's.
+TEST(Newcomers, AThingThatIsNoPersonKeepsNobodyFromStarting) {
+  const Map map = room_with(kPerson, 2);
+  const Image<Rgb8> picture({320, 240});
+  const FrameView frame{map.view(), picture, 1.0 / 30, BodyModel::kLite, {}};
+  OneAnswer detector;
+  detector.score_q15 = 3000;
+  Newcomers newcomers;
+  const Vec3 at = map.geometry_.unproject({kPerson.x + kPerson.width / 2.0, kPerson.y + kPerson.height / 2.0}, 2);
+  EXPECT_FALSE(newcomers.look(detector, frame, {}));
+  EXPECT_FALSE(newcomers.was_mistaken(at));
+  newcomers.add_mistake(at);
+  EXPECT_TRUE(newcomers.was_mistaken(at + Vec3{0.1, 0.1, 0.1}));
+  EXPECT_FALSE(newcomers.was_mistaken(at + Vec3{0, 0.3, 0}));
+  for (int call = 0; call < 6; ++call) newcomers.look(detector, frame, {});
+  EXPECT_FALSE(newcomers.was_mistaken(at));
+}
+
+TEST(Newcomers, WhereSomebodyWasAMistakeNobodyIsLookedFor) {
+  const Map map = room_with(kPerson, 2);
+  const Image<Rgb8> picture({320, 240});
+  const FrameView frame{map.view(), picture, 1.0 / 30, BodyModel::kLite, {}};
+  OneAnswer detector;
+  Newcomers newcomers;
+  newcomers.add_mistake(map.geometry_.unproject({kPerson.x + kPerson.width / 2.0, 0}, 2));
+  EXPECT_FALSE(newcomers.look(detector, frame, {}));
+  EXPECT_EQ(detector.asked, 0);
+}
+
 }  // namespace
 }  // namespace duo::body
