@@ -46,7 +46,7 @@ bool belongs(const SeenHand& hand, const Point& wrist, double px_per_m) {
 }  // namespace
 
 std::optional<Body> Body::start(const FrameView& frame, const SeenBody& seen) {
-  constexpr double kLeastScale = 0.5, kMostScale = 1.4, kStartSigma_m = 0.12, kBehind_m = 0.1;
+  constexpr double kLeastScale = 0.5, kMostScale = 1.4, kBehind_m = 0.1;
   const double z = trunk_depth(frame.depth, corners_of(seen), kAnyDepth);
   if (z == 0 || !stands_out(frame.depth, corners_of(seen))) return std::nullopt;
   // How large the person is: the trunk as it is seen beside the trunk as the network imagines it.
@@ -63,7 +63,6 @@ std::optional<Body> Body::start(const FrameView& frame, const SeenBody& seen) {
   Body body(std::clamp(scale, 0.6, 1.12));
   body.fitted_.places = imagined(frame, seen, points, z);
   body.trunk_z_m_ = z;
-  for (const JointId id : kFreeJoints) body.states_[id].sigma_m = kStartSigma_m;
   return body;
 }
 
@@ -117,7 +116,7 @@ double Body::unlike(const FrameView& frame, const SeenBody& seen) const {
   const auto corners = corners_of(seen);
   const Vec3 expected = expected_trunk();
   const double z = std::max(expected.z, kNear_m);
-  const double aside = 1 + 0.3 * std::min(missed_, 10), along = 1 + 0.15 * std::min(missed_, 20);
+  const double aside = 1 + 0.3 * std::min(missed_, 10.0), along = 1 + 0.15 * std::min(missed_, 20.0);
   const Vec2 there = frame.depth.geometry->project({expected.x, expected.y, z});
   const double off = length(there, centre_of(corners)) / (lengths_[Bone::kTrunk] * frame.depth.px_per_m(z) * kNear * aside);
   const double found = trunk_depth(frame.depth, corners, kAnyDepth);
@@ -147,7 +146,7 @@ void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hand
   scene.map = &map_;
   scene.nearer = nearer;
 
-  predict(scene, frame.frame_s);
+  predict(scene, frame.ticks());
   detect(frame, seen, hands, scene);
   lift(scene);
   choose(scene, chosen);
@@ -157,8 +156,8 @@ void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hand
   learn(scene);
 }
 
-void Body::predict(Scene& scene, double frame_s) const {
-  constexpr double kMostSigma_m = 0.3, kAstray = 2;
+void Body::predict(Scene& scene, double ticks) const {
+  constexpr double kStartSigma_m = 0.12, kMostSigma_m = 0.3, kAstray = 2;
   Places ahead = fitted_.places;
   for (const JointId id : kFreeJoints) {
     const State& state = states_[id];
@@ -177,9 +176,9 @@ void Body::predict(Scene& scene, double frame_s) const {
     Expected& expected = scene.expected[id];
     expected.p = ahead[id];
     // It goes astray like a random walk.
-    const double unrest = unrest_m(id) * 30 * frame_s * (1 + 0.5 * std::min(missed_, 10));
-    expected.sigma_m = std::min(unrest * std::sqrt(1.0 + kAstray * state.hidden), kMostSigma_m);
-    if (age_ == 0) expected.sigma_m = state.sigma_m;
+    const double unrest = unrest_m(id) * (1 + 0.5 * std::min(missed_, 10.0));
+    expected.sigma_m = std::min(unrest * std::sqrt(square(ticks) + kAstray * state.hidden), kMostSigma_m);
+    if (age_ == 0) expected.sigma_m = kStartSigma_m;
     expected.hidden = state.hidden;
   }
 }
@@ -188,7 +187,7 @@ void Body::detect(const FrameView& frame, const SeenBody& seen, const Hands& han
   constexpr double kMostStep_m = 0.06, kGate_m = 0.35;
   const double found =
       trunk_depth(frame.depth, corners_of(seen), {std::max(trunk_z_m_ - kGate_m, kNear_m), trunk_z_m_ + kGate_m});
-  const double most_m = kMostStep_m * std::max(1.0, 30 * frame.frame_s) * (1 + missed_);
+  const double most_m = kMostStep_m * (std::max(1.0, frame.ticks()) + missed_);
   if (found > 0) trunk_z_m_ += std::clamp(found - trunk_z_m_, -most_m, most_m);
   scene.trunk_z_m = trunk_z_m_;
   if (!stands_out(frame.depth, corners_of(seen))) ++flat_frames_;
@@ -239,6 +238,7 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
   constexpr int kSights = 2, kUnsureSights = 6;
   int inside = 0, seen = 0;
   ++age_;
+  const double ticks = age_ == 1 ? 1 : frame.ticks();  // before the first frame nothing was hidden for long
   for (const JointId id : kFreeJoints) {
     State& state = states_[id];
     const Vec3 p = fitted_.places[id];
@@ -259,7 +259,7 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     const int enough = sight == HandSight::kSeen ? kSights : kUnsureSights;
     const bool believed = state.sure || age_ == 1 || (sight != HandSight::kAbsent && state.shown >= enough);
     state.sure = state.seen && !hidden_by_arm && believed && frame.shows(point.at_px) && frame.shows(at);
-    state.hidden = state.seen ? 0 : state.hidden + 1;
+    state.hidden = state.seen ? 0 : state.hidden + ticks;
     const Vec3 off = p - scene.expected[id].p;
     // What the network guesses of a hidden limb tells nothing of its speed.
     if (was_hidden && state.seen)
@@ -269,10 +269,9 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     else
       state.step = pace_ + kHiddenDrift * (state.step - pace_);
     if (const double now = norm(state.step); now > kLongestStep_m) state.step = (kLongestStep_m / now) * state.step;
-    state.sigma_m = fitted_.covariance[id].sigma_m() / std::sqrt(3.0);  // along each axis
   }
   seen_share_ = static_cast<double>(seen) / std::max(inside, 1);
-  missed_ = seen > 0 ? 0 : missed_ + 1;
+  missed_ = seen > 0 ? 0 : missed_ + ticks;
   learn_pace();
 }
 
@@ -328,9 +327,9 @@ void Body::learn(const Scene& scene) {
 }
 
 // Who walks behind somebody walks on.
-void Body::miss(bool covered) {
-  const double keeps = covered ? 0.97 : 0.8;
-  ++missed_;
+void Body::miss(const FrameView& frame, bool covered) {
+  const double keeps = std::pow(covered ? 0.97 : 0.8, frame.ticks());
+  missed_ += frame.ticks();
   trunk_z_m_ += pace_.z;
   for (const JointId id : kFreeJoints) {
     State& state = states_[id];
@@ -338,8 +337,7 @@ void Body::miss(bool covered) {
     state.step = keeps * pace_;
     state.seen = state.sure = false;
     state.shown = 0;
-    ++state.hidden;
-    state.sigma_m = std::sqrt(square(state.sigma_m) + square(2 * unrest_m(id)));
+    state.hidden += frame.ticks();
   }
   pace_ = keeps * pace_;
   complete(fitted_.places);
@@ -392,7 +390,7 @@ void Body::publish(const FrameView& frame, Person& person) const {
     Covariance3 c = fitted_.covariance[id];
     if (!state.sure) {
       const bool held = is_root(id) && missed_ == 0;  // by the rest of the trunk
-      const double grown = square(std::min(0.035 + 0.25 * std::min(state.hidden, 30) * frame.frame_s, held ? kHeld_m : 1));
+      const double grown = square(std::min(0.035 + 0.25 * std::min(state.hidden, 30.0) * kTick_s, held ? kHeld_m : 1));
       c.xx += grown;
       c.yy += grown;
       c.zz += grown;

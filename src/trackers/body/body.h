@@ -37,12 +37,12 @@ class Body {
   /// `nearer`: people before this one, who were tracked in this frame.
   void track(const FrameView& frame, const SeenBody& seen, const Hands& hands, std::span<const Places* const> nearer = {});
   /// A frame in which nothing was seen of the person, perhaps because somebody covers it.
-  void miss(bool covered);
+  void miss(const FrameView& frame, bool covered);
 
   const Places& places() const { return fitted_.places; }
   const Lengths& lengths() const { return lengths_; }
-  /// Frames since anything was seen of the person.
-  int missed() const { return missed_; }
+  /// Ticks since anything was seen of the person.
+  double missed() const { return missed_; }
   /// Of the joints that are marked in the picture, how many were seen when it was tracked last.
   double seen_share() const { return seen_share_; }
   /// Frames in which the trunk did not stand out of what is beside it, as a picture on a wall does not.
@@ -58,14 +58,14 @@ class Body {
 
  private:
   struct State {
-    Vec3 step;                  // since the last frame, smoothed
-    int hidden = 0, shown = 0;  // frames since it was seen, and since it was not
-    double sigma_m = 0.1;
+    Vec3 step;          // since the last frame, smoothed
+    double hidden = 0;  // ticks since it was seen
+    int shown = 0;      // frames since it was not
     bool seen = false, sure = false;
   };
 
   explicit Body(double scale) : lengths_(scale) {}
-  void predict(Scene& scene, double frame_s) const;
+  void predict(Scene& scene, double ticks) const;
   void learn_pace();
   void detect(const FrameView& frame, const SeenBody& seen, const Hands& hands, Scene& scene);
   void detect_hand(const FrameView& frame, const SeenHand* hand, bool left, Scene& scene);
@@ -87,7 +87,8 @@ class Body {
   double trunk_z_m_ = 0;
   Vec3 pace_;  // of the trunk's middle from frame to frame, as it walks
   double seen_share_ = 0;
-  int missed_ = 0, age_ = 0, flat_frames_ = 0;
+  double missed_ = 0;  // ticks
+  int age_ = 0, flat_frames_ = 0;
 };
 
 }  // namespace duo::body

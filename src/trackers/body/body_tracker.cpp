@@ -199,7 +199,7 @@ bool BodyTracker::is_of_another(const body::FrameView& frame, std::span<const Se
 
 void BodyTracker::uncover(const body::FrameView& frame) {
   constexpr double kApart_m = 0.25;
-  constexpr int kStillThere = 5;  // frames
+  constexpr double kStillThere = 5;  // ticks
   std::size_t used = 0;
   for (Tracked& each : tracked_) {
     each.uncover = nullptr;
@@ -258,7 +258,7 @@ void BodyTracker::look_elsewhere(const body::FrameView& frame, bool whole) {
     if (!each.matched && each.uncover == nullptr) regions_.push_back(each.body.expected_region(frame));
   if (!whole || frame_ < next_search_ || tracked_.size() == kMostPeople) return;
   next_search_ = frame_ + (frame_ < kSearchEvery / 2 ? 1 : kSearchEvery);
-  constexpr int kStillThere = 3;  // frames
+  constexpr double kStillThere = 3;  // ticks
   trunks_.clear();
   for (const Tracked& each : tracked_)
     if (each.body.missed() <= kStillThere) trunks_.push_back(each.body.expected_trunk());
@@ -329,7 +329,7 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
   }
   for (Tracked& each : tracked_)
     if (std::ranges::none_of(sights_, [&](const Sight& sight) { return sight.who == &each; })) {
-      each.body.miss(each.covered);
+      each.body.miss(view, each.covered);
       track_fingers(each, view, {});
     }
   forget();
@@ -340,10 +340,11 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
 }
 
 void BodyTracker::forget() {
-  constexpr int kForget = 75, kForgetNew = 15, kConfirm = 10, kMostFlat = 3;  // frames
+  constexpr double kForget = 75, kForgetNew = 15;  // ticks
+  constexpr int kConfirm = 10, kMostFlat = 3;      // frames
   constexpr double kEnough = 1.0 / 3;
   std::erase_if(tracked_, [&](Tracked& each) {
-    const int missed = each.body.missed();
+    const double missed = each.body.missed();
     if (each.confirmed == kConfirm || each.covered) return missed > kForget;
     if (each.body.seen_share() < kEnough || each.body.flat_frames() > kMostFlat) {
       newcomers_.add_mistake(each.body.expected_trunk());

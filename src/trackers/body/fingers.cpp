@@ -104,13 +104,13 @@ void Fingers::track(const FrameView& frame, const SeenHand* hand, const Places& 
     hidden_ = 0;
   } else {
     for (Vec3& p : found_.p) p = p + (wrist_now - wrist_);
-    hidden_ = std::min(hidden_ + 1, kMostHidden + 1);
+    hidden_ = std::min(hidden_ + frame.ticks(), kMostHidden + 1);
   }
   wrist_ = wrist_now;
 }
 
 void Fingers::publish(Person& person) const {
-  constexpr double kAstray_m = 0.015;  // a frame
+  constexpr double kAstray_m = 0.015;  // per tick
   const Joint& at_wrist = person.joints[index_of(wrist())];
   for (std::size_t i = 0; i < kFingerJoints; ++i) {
     Joint& joint =

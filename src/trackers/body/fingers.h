@@ -33,12 +33,12 @@ class Fingers {
   void publish(Person& person) const;
 
  private:
-  static constexpr int kMostHidden = 5;  // frames after which fingers are lost
+  static constexpr double kMostHidden = 5;  // ticks after which fingers are lost
 
   JointId wrist() const { return left_ ? JointId::kLeftWrist : JointId::kRightWrist; }
 
   bool left_;
-  int hidden_ = kMostHidden + 1;
+  double hidden_ = kMostHidden + 1;  // ticks
   FingerPlaces found_;
   Vec3 wrist_;  // in the last frame
 };

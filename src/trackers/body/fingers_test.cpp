@@ -115,7 +115,8 @@ TEST(Fingers, NeedSomeDepth) {
   EXPECT_FALSE(place_fingers(map.view(), hand, 1.02)) << "that is a wall";
 }
 
-/// A hand that is not seen goes along with its wrist for five frames; its fingers' doubt grows, and then they are lost.
+/// A hand that is not seen goes along with its wrist for five frames of 1/30 s; its fingers' doubt grows, and then they are
+/// lost.
 TEST(Fingers, GoAlongWithTheWrist) {
   Pictured map;
   map.fill({100, 60, 120, 120}, 1);
@@ -146,6 +147,34 @@ TEST(Fingers, GoAlongWithTheWrist) {
   fingers.publish(person);
   EXPECT_EQ(tip().state, JointState::kLost);
   EXPECT_EQ(person.find(JointId::kRightIndexTip)->state, JointState::kSeen) << "the other hand's";
+}
+
+/// At 60 frames per second four frames are two ticks, and ten are the last that show it.
+TEST(Fingers, GoAstrayWithTime) {
+  Pictured map;
+  map.fill({100, 60, 120, 120}, 1);
+  FrameView frame = map.view();
+  frame.frame_s = 1.0 / 60;
+  const SeenHand hand = flat_hand(map.geometry_, 1);
+  Places body = test::standing();
+  body[JointId::kLeftWrist] = {0, 0.08, 1.02};
+  body[JointId::kLeftHand] = {0, 0.01, 1.02};
+  Fingers fingers(true);
+  Person person;
+  person.skeleton = &kBodyHands;
+  for (Joint& joint : person.joints) joint.state = JointState::kSeen;
+  fingers.track(frame, &hand, body);
+  fingers.publish(person);
+  const Joint& tip = *person.find(JointId::kLeftIndexTip);
+  const double before_m2 = tip.cov_m2.yy;
+  for (int i = 1; i <= 11; ++i) {
+    fingers.track(frame, nullptr, body);
+    fingers.publish(person);
+    if (i == 4) {
+      EXPECT_NEAR(tip.cov_m2.yy, before_m2 + square(0.030), 1e-12);
+    }
+    EXPECT_EQ(tip.state, i <= 10 ? JointState::kInferred : JointState::kLost) << i;
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "duoptic/detector.h"
 #include "duoptic/image.h"
+#include "trackers/body/joints.h"
 #include "trackers/body/lift.h"
 
 namespace duo::body {
@@ -15,6 +16,8 @@ struct FrameView {
   View<const std::uint8_t> covered;      // not 0: somebody nearer was taken out there; empty: nobody was
   View<const std::uint8_t> margin = {};  // not 0: the camera sees nothing there; empty: it sees all
 
+  /// Since the frame before, in the tracker's unit.
+  double ticks() const { return frame_s / kTick_s; }
   bool is_covered(Vec2 at_px) const { return is_set(covered, at_px); }
   /// Whether the camera sees a place.
   bool shows(Vec2 at_px) const {

@@ -71,9 +71,12 @@ inline double to_segment(Vec3 p, Vec3 a, Vec3 b) {
   return distance(p, a + t * way);
 }
 
-/// How far a joint may move from where it was expected, from frame to frame: one standard deviation.
+/// The tracker's unit of time, whatever the frames' rate is.
+inline constexpr double kTick_s = 1.0 / 30;
+
+/// How far a joint may move from where it was expected: one standard deviation.
 ///
-/// Units  m a 1/30 s
+/// Units  metres per tick
 constexpr double unrest_m(JointId id) {
   using enum JointId;
   switch (id) {

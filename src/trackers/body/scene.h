@@ -14,7 +14,7 @@ namespace duo::body {
 struct Expected {
   Vec3 p;
   double sigma_m = 0.1;
-  int hidden = 0;  // frames since it was seen
+  double hidden = 0;  // ticks since it was seen
 };
 
 /// What the network of hands said in this frame or, where the other hand was asked, in the one before; outside: the hand would
