@@ -49,7 +49,8 @@ Result<void> check_baseline(Vec3 t_m, const std::string& name) {
   const double baseline_m = norm(t_m);
   if (!(baseline_m <= kMaxBaseline_m))
     return rig_error(name,
-                     "the cameras would be {:.4g} m apart; the translation must be in metres (divide millimetres by 1000)",
+                     "the cameras would be {:.4g} m apart; the translation must be in metres (divide millimetres by 1000, "
+                     "centimetres by 100)",
                      baseline_m);
   if (baseline_m < kMinBaseline_m)
     return rig_error(name, "the cameras would be {:.4g} m apart; at least {} m is needed, in metres", baseline_m,

@@ -121,8 +121,8 @@ std::string why_rows_differ(const std::vector<SceneMatch>& matches, int height) 
       rows_px[rows_px.size() / 20], rows_px[rows_px.size() - 1 - rows_px.size() / 20]);
 }
 
-/// Median of what values at the matches keep when a plane over the left picture is taken off them.
-double off_plane_px(const std::vector<SceneMatch>& matches, double (*value)(const SceneMatch&)) {
+/// What values at the matches are by a plane over the left picture: a constant, per column, per row.
+Eigen::VectorXd plane_of(const std::vector<SceneMatch>& matches, double (*value)(const SceneMatch&)) {
   const auto count = static_cast<Eigen::Index>(matches.size());
   Eigen::MatrixXd terms(count, 3);
   Eigen::VectorXd values(count);
@@ -131,40 +131,65 @@ double off_plane_px(const std::vector<SceneMatch>& matches, double (*value)(cons
     terms.row(i) << 1, m.left_px.x, m.left_px.y;
     values[i] = value(m);
   }
-  const Eigen::VectorXd plane = solve_normal(terms.transpose() * terms, terms.transpose() * values);
+  return solve_normal(terms.transpose() * terms, terms.transpose() * values);
+}
+
+/// Median of what they keep when that plane is taken off them.
+double off_plane_px(const std::vector<SceneMatch>& matches, double (*value)(const SceneMatch&)) {
+  const Eigen::VectorXd plane = plane_of(matches, value);
   std::vector<double> off;
-  for (Eigen::Index i = 0; i < count; ++i) off.push_back(std::abs(values[i] - plane.dot(terms.row(i).transpose())));
+  for (const SceneMatch& m : matches)
+    off.push_back(std::abs(value(m) - plane.dot(Eigen::Vector3d(1, m.left_px.x, m.left_px.y))));
   return median(off);
 }
+
+double disparity_px(const SceneMatch& m) { return m.left_px.x - m.right_px.x; }
 
 /// Depth moves points along rows where the cameras stand side by side, and along columns where both pictures lie on their side.
 std::string why_along_columns(const std::vector<SceneMatch>& matches) {
   constexpr double kTimes = 3, kLeast_px = 1.5;
-  const double across_px = off_plane_px(matches, [](const SceneMatch&m) { return m.left_px.x - m.right_px.x; }),
+  const double across_px = off_plane_px(matches, disparity_px),
                down_px = off_plane_px(matches, [](const SceneMatch&m) { return m.left_px.y - m.right_px.y; });
   if (down_px < kLeast_px || down_px < kTimes * across_px) return {};
   return "both pictures lie on their side, or one camera stands above the other: things at other distances lie in other rows, "
          "not in other columns; turn both pictures by 90 degrees, or both cameras";
 }
 
-/// Of a pair that is taken as rectified: where its points would lie.
-std::string why_not_rectified(const std::vector<SceneMatch>& matches) {
-  std::vector<double> d_px;
-  for (const SceneMatch& m : matches) d_px.push_back(m.left_px.x - m.right_px.x);
-  std::sort(d_px.begin(), d_px.end());
-  const auto at = [&](double share) { return d_px[static_cast<std::size_t>(share * static_cast<double>(d_px.size() - 1))]; };
-  if (at(0.5) > -1) return {};
-  if (at(0.9) > 1)
-    return fmt::format(
-        "most points lie up to {:.0f} px further right in the right picture than in the left one, as no rectified pair has "
-        "them: "
-        "give a rig, or move the pictures apart",
-        -at(0.05));
+std::vector<double> disparities_px(const std::vector<SceneMatch>& matches, double per_column = 0) {
+  std::vector<double> out;
+  for (const SceneMatch& m : matches) out.push_back(disparity_px(m) - per_column * m.left_px.x);
+  return out;
+}
+double share_of(const std::vector<double>& values, double share) { return quantile(std::vector(values), share); }
+double spread(const std::vector<double>& values) { return share_of(values, 0.95) - share_of(values, 0.05); }
+
+/// Of a pair that is taken as rectified: whether most points lie beyond infinity, and none before it.
+std::string why_swapped(const std::vector<SceneMatch>& matches) {
+  const std::vector<double> d_px = disparities_px(matches);
+  if (share_of(d_px, 0.5) > -1 || share_of(d_px, 0.9) > 1) return {};
   return fmt::format(
       "left and right are swapped, or both pictures are mirrored: points lie up to {:.0f} px further right in the right "
-      "picture "
-      "than in the left one; give them in the other order, or switch the mirroring of the cameras off",
-      -at(0.05));
+      "picture than in the left one; give them in the other order, or switch the mirroring of the cameras off",
+      -share_of(d_px, 0.05));
+}
+
+/// The same where some of them do.
+std::string why_columns_differ(const std::vector<SceneMatch>& matches) {
+  constexpr double kSome = 0.1, kBehind_px = -2;
+  constexpr double kLevelled = 0.5;  // of the spread of disparities, where one per column is taken off them
+  const std::vector<double> d_px = disparities_px(matches);
+  if (share_of(d_px, 0.5) > -1 && share_of(d_px, kSome) > kBehind_px) return {};
+  const double stretch = plane_of(matches, disparity_px)[1];
+  if (spread(disparities_px(matches, stretch)) < kLevelled * spread(d_px))
+    return fmt::format(
+        "the right picture is {:.0f} % {} than the left one: points lie {:.0f} px further right in it to {:.0f} px further "
+        "left, "
+        "as if one was stretched; give both as their cameras made them",
+        100 * std::abs(stretch), stretch > 0 ? "narrower" : "wider", -share_of(d_px, 0.05), share_of(d_px, 0.95));
+  return fmt::format(
+      "many points lie up to {:.0f} px further right in the right picture than in the left one, as no rectified pair has them: "
+      "give a rig, or move the pictures apart",
+      -share_of(d_px, 0.05));
 }
 
 std::string misfit_text(const SceneHealth& h) {
@@ -190,15 +215,41 @@ RigFit not_metric(RigFit fit) {
   return fit;
 }
 
+/// The pan of one camera, if nothing else was moved: of both that could have been turned the one that fits better, where the
+/// points are sure of either, and the free pose does not turn the other way.
+std::optional<ScenePose> one_camera_pan(const Rig& rig, const Evidence& evidence, const SceneHealth& health) {
+  constexpr double kSure_sigmas = 3, kLeast_rad = kLeastPan_rad / 2;
+  std::optional<ScenePose> best;
+  if (std::abs(health.turned_rad.y) < kLeast_rad) return best;
+  for (const SceneFreedom& freedom : {kLeftTurned, kRightTurned}) {
+    const auto pose = fit_scene_pose(rig, freedom, evidence.matches, evidence.pairs);
+    if (!pose) return {};
+    const double pan_rad = std::copysign(1, health.turned_rad.y) * pose->turned_rad.y;
+    if (pan_rad < std::max(kLeast_rad, kSure_sigmas * pose->turn_sigma_rad.y)) return {};
+    if (!best || pose->row_rms_px < best->row_rms_px) best = *pose;
+  }
+  return best;
+}
+
 RigFit judged(const Rig& rig, const Evidence& evidence) {
-  const auto health = judge_scene(rig, evidence);
+  auto health = judge_scene(rig, evidence);
   if (!health) return misfit(health.error().what);
+  std::optional<ScenePose> turned;
+  if (health->verdict != RigVerdict::kRecalibrate && rig.metric) turned = one_camera_pan(rig, evidence, *health);
+  if (turned) {
+    health->verdict = RigVerdict::kCanBeImproved;
+    health->turned_rad = turned->turned_rad;
+    health->turned_sigma_rad = turned->turn_sigma_rad;
+    health->pan_px = std::abs(turned->turned_rad.y) * rig.left.fx_px;
+    health->pan_sigma_px = turned->turn_sigma_rad.y * rig.left.fx_px;
+  }
   RigFit fit{health->verdict, {}, *health};
   // A few pairs are looked at in every run: what they may say by chance is not said. Where they could not tell the least pan
   // that is to be found, they must be sure of a larger one.
   constexpr double kToldPan_sigmas = 3;
   const bool could_tell = health->turned_sigma_rad.y <= kLeastPan_rad / kToldPan_sigmas;
-  const bool pan_told = sure_of_pan(*health) || (could_tell && health->pan_px >= kToldPan_sigmas * health->pan_sigma_px);
+  const bool pan_told =
+      turned || sure_of_pan(*health) || (could_tell && health->pan_px >= kToldPan_sigmas * health->pan_sigma_px);
   // Few points, on one side of the picture, have rows that are a little off by chance, too.
   constexpr double kEnoughCovered = 0.5;
   const bool rows_told = health->row_px >= kGoodRow_px && health->covered >= kEnoughCovered;
@@ -240,11 +291,11 @@ std::optional<RigFit> fit_by_numbers(const std::optional<Rig>& rig, Size size) {
 
 }  // namespace
 
-RigFitting::RigFitting(std::optional<Rig> rig, Size size, int threads)
-    : rig_(std::move(rig)), lenses_(rig_ ? *rig_ : guessed_rig(size)), size_(size), threads_(threads) {}
+RigFitting::RigFitting(std::optional<Rig> rig, Size size, int threads, SceneSearch most)
+    : rig_(std::move(rig)), lenses_(rig_ ? *rig_ : guessed_rig(size)), size_(size), threads_(threads), most_(most) {}
 
 void RigFitting::add(const std::shared_ptr<const Pair>& pair) {
-  if (!matcher_) matcher_.emplace(size_, threads_);
+  if (!matcher_) matcher_.emplace(size_, threads_, most_);
   matcher_->add(*pair);
   last_ = pair;
 }
@@ -256,8 +307,9 @@ std::optional<RigFit> RigFitting::by_matches(const SceneMatches& scene) const {
   if (!matches) return {};
   if (!rig_) {
     std::string why = why_along_columns(*matches);
-    if (why.empty()) why = why_not_rectified(*matches);
+    if (why.empty()) why = why_swapped(*matches);
     if (why.empty()) why = why_rows_differ(*matches, size_.height);
+    if (why.empty()) why = why_columns_differ(*matches);
     return why.empty() ? RigFit() : misfit(std::move(why));
   }
   const auto evidence = evidence_of(scene, *matches);
@@ -266,13 +318,16 @@ std::optional<RigFit> RigFitting::by_matches(const SceneMatches& scene) const {
 
 std::optional<RigFit> RigFitting::by_first(const std::shared_ptr<const Pair>& pair) {
   if (auto known = fit_by_numbers(rig_, size_)) return known;
-  const auto sure = [&](const std::optional<RigFit>& fit) { return fit && (surely_good(rig_, *fit) || surely_wrong(*fit)); };
-  // What is said without a judged scene needs more points than a quick search finds.
-  if (auto fit = by_matches(match_pair(*pair, threads_, SceneSearch::kQuick)); sure(fit) && (fit->scene || fit->what.empty()))
-    return fit;
+  const auto sure = [&](const std::optional<RigFit>& fit, SceneSearch search) {
+    if (!fit || !(surely_good(rig_, *fit) || surely_wrong(*fit))) return false;
+    // What is said without a judged scene needs more points than a quick search finds.
+    return search == SceneSearch::kThorough || fit->scene || fit->what.empty();
+  };
+  if (most_ != SceneSearch::kQuick)
+    if (auto fit = by_matches(match_pair(*pair, threads_, SceneSearch::kQuick)); sure(fit, SceneSearch::kQuick)) return fit;
   add(pair);
   auto fit = by_matches(matcher_->matches());
-  return sure(fit) ? fit : std::nullopt;
+  return sure(fit, most_) ? fit : std::nullopt;
 }
 
 RigFit RigFitting::by_all(std::span<const std::shared_ptr<const Pair>> others) {

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "calib/scene_pose.h"
 #include "duoptic/synthetic.h"
 #include "tests/turned_rig.h"
 
@@ -71,6 +73,23 @@ Camera small_camera(Camera camera) {
   camera.size = {camera.size.width / 3, camera.size.height / 3};
   camera.fx_px /= 3, camera.fy_px /= 3;
   camera.cx_px = (camera.cx_px - 1) / 3, camera.cy_px = (camera.cy_px - 1) / 3;
+  return camera;
+}
+
+/// A rectified pair.
+const SyntheticPair& ideal_room() {
+  static const SyntheticPair room = render_synthetic({.size = kRoomSize, .ideal = true}, 2);
+  return room;
+}
+
+/// Six times as large. By hand: the middle of pixel x lies at 6 x + 2.5.
+Image<Rgb8> large_copy(const Image<Rgb8>& picture) {
+  return placed(picture, {6 * picture.width(), 6 * picture.height()}, [](int x, int y) { return std::pair(x / 6, y / 6); });
+}
+Camera large_camera(Camera camera) {
+  camera.size = {6 * camera.size.width, 6 * camera.size.height};
+  camera.fx_px *= 6, camera.fy_px *= 6;
+  camera.cx_px = 6 * camera.cx_px + 2.5, camera.cy_px = 6 * camera.cy_px + 2.5;
   return camera;
 }
 
@@ -196,6 +215,30 @@ TEST(RigFit, ATurnedCameraAndAnotherRigAreTold) {
   expect_told(rig_fit(fit_room(1).rig, pairs_of(2), 2), "another rig's file");
 }
 
+/// Points of a wall at one side of the picture: a pan of 0.6 degrees, and a baseline that turned, move rows there alike. That
+/// only one camera turned, around its own centre, leaves the first alone.
+TEST(RigFit, FewPointsKnowThePanOfOneCameraBetter) {
+  Rig rig;
+  rig.left = rig.right = {.size = {640, 480}, .fx_px = 500, .fy_px = 500, .cx_px = 319.5, .cy_px = 239.5};
+  rig.right_from_left.t_m = {-0.12, 0, 0};
+  const Rig turned = right_turned(rig, turn(0, 0.6, 0));
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0, 0.2);
+  std::vector<SceneMatch> matches;
+  for (int y = 20; y < 460; y += 40)
+    for (int x = 400; x < 600; x += 40) {
+      const Vec3 wall = 2.0 * Vec3{(x - 319.5) / 500, (y - 239.5) / 500, 1};
+      const Vec3 p = turned.right_from_left.rotation * wall + turned.right_from_left.t_m;
+      matches.push_back({{double(x), double(y)}, {500 * p.x / p.z + 319.5, 500 * p.y / p.z + 239.5 + noise(random)}});
+    }
+  const auto free = fit_scene_pose(rig, kFreePose, matches, 1), one = fit_scene_pose(rig, kRightTurned, matches, 1);
+  ASSERT_TRUE(free && one);
+  const double pan = 0.6 * M_PI / 180;
+  EXPECT_NEAR(one->turned_rad.y, pan, 3 * one->turn_sigma_rad.y);
+  EXPECT_LT(one->turn_sigma_rad.y, pan / 3);
+  EXPECT_GT(free->turn_sigma_rad.y, 1.3 * one->turn_sigma_rad.y);
+}
+
 TEST(RigFit, KnownCausesAreNamed) {
   const std::optional<Rig> rig = fit_room(1).rig;
   const Image<Rgb8>&left = fit_room(1).pair.left.pixels, &right = fit_room(1).pair.right.pixels;
@@ -241,6 +284,19 @@ TEST(RigFit, APictureThatIsTurnedOverOrANegative) {
   expect_told(rig_fit({}, pairs_of(dark_left, dark_right, negative_of, as_it_is), 2), "negative");
 }
 
+/// Pictures of millions of pixels, which are looked at halved.
+TEST(RigFit, LargePicturesAreJudgedAsTheirCopies) {
+  const PairList pairs = pairs_of(1, large_copy, large_copy);
+  Rig rig = fit_room(1).rig;
+  rig.left = large_camera(rig.left), rig.right = large_camera(rig.right);
+  const RigFit fit = rig_fit(rig, pairs, 2);
+  expect_good(fit);
+  ASSERT_TRUE(fit.scene);
+  EXPECT_GT(fit.scene->points, 100);
+  EXPECT_LT(fit.scene->row_px, 1);  // a sixth of a pixel of the small ones
+  expect_told(rig_fit(right_turned(rig, turn(0.3, 0, 0)), pairs, 2), "tilt -0.3");
+}
+
 TEST(RigFit, BothPicturesOnTheirSide) {
   for (const std::uint32_t seed : {1u, 2u}) {
     SCOPED_TRACE(seed);
@@ -250,8 +306,7 @@ TEST(RigFit, BothPicturesOnTheirSide) {
 
 /// Without a rig rows may be off, and are put right; those of a picture that was zoomed into are not.
 TEST(RigFit, RowsOfAZoomedPictureDoNotFit) {
-  const SyntheticPair ideal = render_synthetic({.size = {480, 360}, .ideal = true}, 2);
-  const Image<Rgb8>&left = ideal.pair.left.pixels, &right = ideal.pair.right.pixels;
+  const Image<Rgb8>&left = ideal_room().pair.left.pixels, &right = ideal_room().pair.right.pixels;
   const auto lower = [](const Image<Rgb8>& picture) {
     return placed(picture, kRoomSize, [](int x, int y) { return std::pair(x, y - 12); });
   };
@@ -259,6 +314,22 @@ TEST(RigFit, RowsOfAZoomedPictureDoNotFit) {
   expect_good(rig_fit({}, pairs_of(left, right, as_it_is, lower), 2));
   expect_told(rig_fit({}, pairs_of(left, right, as_it_is, zoomed), 2), "the rows of both pictures do not fit");
   expect_told(rig_fit({}, pairs_of(left, right, zoomed, as_it_is), 2), "the rows of both pictures do not fit");
+}
+
+/// Without a rig columns have to be right. By hand: what is four thirds as wide in the one picture as in the other is a quarter
+/// narrower in that one.
+TEST(RigFit, AStretchedPictureIsTold) {
+  const Image<Rgb8>&left = ideal_room().pair.left.pixels, &right = ideal_room().pair.right.pixels;
+  const auto wider = [](const Image<Rgb8>& picture) {
+    return placed(picture, kRoomSize, [](int x, int y) { return std::pair(240 + (x - 240) * 3 / 4, y); });
+  };
+  expect_told(rig_fit({}, pairs_of(left, right, wider, as_it_is), 2), "% narrower than the left one");
+  expect_told(rig_fit({}, pairs_of(left, right, as_it_is, wider), 2), "% wider than the left one");
+  // Moved against each other, as stereo films are, some lie beyond infinity.
+  const auto moved = [](const Image<Rgb8>& picture) {
+    return placed(picture, kRoomSize, [](int x, int y) { return std::pair(x - 20, y); });
+  };
+  expect_told(rig_fit({}, pairs_of(left, right, as_it_is, moved), 2), "give a rig, or move the pictures apart");
 }
 
 TEST(RigFit, WhatCannotBeSeenIsNotDoubted) {

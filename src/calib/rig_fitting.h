@@ -13,8 +13,8 @@ namespace duo {
 /// Whether some pairs fit a rig: by the first of them what is beyond doubt, then by all.
 class RigFitting {
  public:
-  /// Pictures of `size`. Takes its memory when it is used.
-  RigFitting(std::optional<Rig> rig, Size size, int threads);
+  /// Pictures of `size`. Takes its memory when it is used. `most`: how a pair is searched where a quick search leaves a doubt.
+  RigFitting(std::optional<Rig> rig, Size size, int threads, SceneSearch most = SceneSearch::kThorough);
 
   /// What the first pair tells beyond doubt, right or wrong; none where others have to be looked at, too. To be called once.
   std::optional<RigFit> by_first(const std::shared_ptr<const Pair>& pair);
@@ -29,6 +29,7 @@ class RigFitting {
   const Rig lenses_;  // of the rig, or a guess
   const Size size_;
   const int threads_;
+  const SceneSearch most_;
   std::optional<SceneMatcher> matcher_;  // of all pairs that were added
   std::shared_ptr<const Pair> last_;
 };

@@ -31,9 +31,17 @@ constexpr int kMostOfACell = 400;       // over all pairs
 constexpr int kFewOfACell = 8;          // of one pair, in a quick search
 constexpr int kQuickWidth = 480;        // of its pictures at most, px
 constexpr int kSmallWidth = 240;        // pictures of fewer columns are doubled: they have too few points
+constexpr int kLargeWidth = 2560;       // of more are halved: points are many, and lists of 8K take gigabytes
 
 cv::Mat cv_view(Image<std::uint8_t>& image) {
   return {image.height(), image.width(), CV_8U, image.row(0), static_cast<std::size_t>(image.stride())};
+}
+
+/// Of the picture that points are laid over each other in.
+Size gray_size(Size given) {
+  if (given.width < kSmallWidth) return {2 * given.width, 2 * given.height};
+  while (given.width > kLargeWidth) given = half_of(given);
+  return given;
 }
 
 /// Of the picture in which points are looked for.
@@ -58,8 +66,7 @@ struct SceneMatcher::State {
   State(Size size, int threads, SceneSearch search)
       : pool(threads),
         quick(search == SceneSearch::kQuick),
-        doubled(size.width < kSmallWidth),
-        gray(doubled ? Size{2 * size.width, 2 * size.height} : size),
+        gray(gray_size(size)),
         smooth_left(gray.size()),
         smooth_right(gray.size()),
         scratch(searched_size(gray.size(), search), kPoints),
@@ -67,14 +74,22 @@ struct SceneMatcher::State {
         right(kPoints),
         found(kPoints) {
     scene.size = size;
-    if (doubled) small = Image<std::uint8_t>(size);
+    if (gray.size() != size) given = Image<std::uint8_t>(size);
+    if (gray.width() > size.width) px_given = 0.5;
+    for (Size half = size; gray.width() < half.width; px_given *= 2)
+      if ((half = half_of(half)) != gray.size()) larger.emplace_back(half);
     for (Size half = gray.size(); half != searched_size(gray.size(), search); ++halvings)
       coarse.emplace_back(half = half_of(half));
   }
 
   void find(const Picture& picture, SiftPoints& out, Image<float>& smooth) {
-    simd::gray(pool, picture.pixels, doubled ? small : gray);
-    if (doubled) cv::resize(cv_view(small), cv_view(gray), {gray.width(), gray.height()}, 0, 0, cv::INTER_LINEAR);
+    simd::gray(pool, picture.pixels, given.empty() ? gray : given);
+    if (px_given < 1) cv::resize(cv_view(given), cv_view(gray), {gray.width(), gray.height()}, 0, 0, cv::INTER_LINEAR);
+    if (px_given > 1) {
+      const Image<std::uint8_t>* from = &given;
+      for (Image<std::uint8_t>& half : larger) simd::halve(pool, *from, half), from = &half;
+      simd::halve(pool, *from, gray);
+    }
     for (int i = 0; i < halvings; ++i) simd::halve(pool, i == 0 ? gray : coarse[i - 1], coarse[i]);
     const Image<std::uint8_t>& searched = halvings > 0 ? coarse.back() : gray;
     simd::sift(pool, searched, Window::all(searched.size()), {.contrast = 0.02f}, scratch, out);
@@ -90,11 +105,16 @@ struct SceneMatcher::State {
   }
 
   /// In the picture that was given.
-  Vec2 given_place_of(Vec2 in_gray) const { return doubled ? Vec2{(in_gray.x - 0.5) / 2, (in_gray.y - 0.5) / 2} : in_gray; }
+  Vec2 given_place_of(Vec2 in_gray) const {
+    const double shift = (px_given - 1) / 2;
+    return {px_given * in_gray.x + shift, px_given * in_gray.y + shift};
+  }
 
   Pool pool;
-  const bool quick, doubled;
-  Image<std::uint8_t> gray, small;          // small: before it is doubled
+  const bool quick;
+  Image<std::uint8_t> gray, given;          // given: where the picture has another size
+  std::vector<Image<std::uint8_t>> larger;  // between the two
+  double px_given = 1;                      // per pixel of gray
   std::vector<Image<std::uint8_t>> coarse;  // each half of the one before
   int halvings = 0;
   Image<float> smooth_left, smooth_right;

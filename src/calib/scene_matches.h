@@ -46,8 +46,8 @@ class SceneMatcher {
 inline constexpr std::int64_t kTwoMinutes = 3600;  // pairs of a usual camera
 
 /// SIFT points of pairs spread evenly over a stream, matched by their descriptors alone: no place, row or rig is assumed, so
-/// that some matches are wrong. Pictures of fewer than 240 columns are doubled first. Where one part of the picture has far more
-/// of them than others, the best of its own are kept.
+/// that some matches are wrong. Pictures of fewer than 240 columns are doubled first, of more than 2560 halved. Where one part
+/// of the picture has far more of them than others, the best of its own are kept.
 ///
 /// `farthest`: pairs that are read at most; a live source gives a tenth of them
 /// Errors      those of the stream

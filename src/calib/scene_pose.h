@@ -24,6 +24,9 @@ using SceneFreedom = std::array<double, kSceneParts>;
 inline constexpr SceneFreedom kFreePose = {0.5, 0.3, 0.3, 0.3, 0.3, 0, 0, 0};
 /// The same with lenses that nobody knows: a field of view as webcams have, a little distortion, axes nearly parallel.
 inline constexpr SceneFreedom kFreePoseAndLens = {0.5, 0.03, 0.03, 0.3, 0.3, 0.1, 0.02, 0.1};
+/// One camera was turned around its own centre, which leaves the baseline where it was in the other's picture: three unknowns
+/// instead of five, and a pan that few points know better.
+inline constexpr SceneFreedom kLeftTurned = {0.5, 0.3, 0, 0.3, 0, 0, 0, 0}, kRightTurned = {0.5, 0, 0.3, 0, 0.3, 0, 0, 0};
 /// A rig that was good and got a push. Points see tilt and roll well; a pan they see badly, and a wrong one spoils every depth.
 inline constexpr SceneFreedom kNudged = {0.5, 0.0005, 0.0005, 0.5, 0.5, 0, 0, 0};
 
