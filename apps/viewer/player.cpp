@@ -261,6 +261,7 @@ void Player::advance() {
   {
     const std::lock_guard lock(mutex_);
     if (const auto& fit = pipeline_->rig_fit()) status_.rig_news = fit->what;
+    if (!pipeline_->rig_news().empty()) status_.rig_news = pipeline_->rig_news();
     status_.silent = *next == Next::kNothing;
     status_.dropped = pipeline_->dropped();
     if (live()) status_.event = pipeline_->warning();

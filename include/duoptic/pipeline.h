@@ -98,8 +98,9 @@ class Pipeline {
   /// What the pairs so far say of the rig; none: not yet judged. Of files it comes with the same frame in every run, of a
   /// picture with its frame, and of a short file with its end.
   const std::optional<RigFit>& rig_fit() const;
-  /// RigFit::what, where next() brought another verdict; else empty.
-  std::string rig_news() const;
+  /// RigFit::what of another verdict, once, as soon as it is known: of files up to half a second before rig_fit() has it. Empty
+  /// with RigCheck::kStrict, whose error says it.
+  const std::string& rig_news() const;
   /// Tracks from clicks on this frame; see Tracker::select().
   Result<void> select(std::span<const Selection> selections);
   /// Forgets who was selected.

@@ -9,7 +9,7 @@
 #include "core/check.h"
 #include "core/clock.h"
 #include "pipeline/frame_stream.h"
-#include "pipeline/repeat_watch.h"
+#include "pipeline/picture_watch.h"
 #include "pipeline/rig_watch.h"
 #include "pipeline/tap.h"
 #include "sources/file_source.h"
@@ -37,10 +37,10 @@ struct Pipeline::State {
   std::shared_ptr<const Pair> pair;  // last.pair
   std::vector<Person> people;
   double tracker_ms = 0;
-  RepeatWatch repeats;
+  PictureWatch pictures;
   RigWatch watch;
-  bool rig_news = false, rig_news_before = false;  // of pairs that were passed over
-  std::int64_t passed = 0;                         // frames of sources before this one
+  std::string rig_news, rig_news_before;  // before: of pairs that were passed over
+  std::int64_t passed = 0;                // frames of sources before this one
   double passed_s = 0;
 
   const PairSource& source() const { return frames ? frames->source() : *waiting; }
@@ -86,7 +86,9 @@ Result<void> Pipeline::State::prepare() {
   header.frame_s = waiting->frame_s();
   header.live = live;
   header.metric = !of_engine.rig || of_engine.rig->metric;
-  if (setup.check != RigCheck::kNone) watch = RigWatch(of_engine.rig, live);
+  // A recording takes so little time that all points of three pairs would be a tenth of it.
+  const bool quick = setup.engine.empty() && of_engine.rig.has_value();
+  if (setup.check != RigCheck::kNone) watch = RigWatch(of_engine.rig, live, quick);
   if (setup.engine.empty()) return {};
 
   if (tracker != nullptr || !setup.tracker.empty()) {
@@ -161,7 +163,7 @@ Result<FrameStream::Passed> Pipeline::State::pass_over() {
     if (next != Next::kNew) break;
     if (passed.pairs == 0) passed.start_ns = pair->left.t_ns;
     const bool looked_at = (setup.first - passed.pairs) % setup.every == 0;
-    if (looked_at && watch.see(pair, false)) rig_news_before = true;
+    if (const RigFit* const news = looked_at ? watch.see(pair, false) : nullptr) rig_news_before = news->what;
     passed.last = std::move(pair);
     ++passed.pairs;
   }
@@ -188,12 +190,13 @@ Result<void> Pipeline::State::start() {
 }
 
 Result<void> Pipeline::State::look_at_rig(Next next) {
-  rig_news = false;
+  rig_news = std::exchange(rig_news_before, {});
   if (next == Next::kNothing) return {};
-  rig_news = next == Next::kNew ? watch.see(pair, source().still()) : watch.end();
-  rig_news = (rig_news | std::exchange(rig_news_before, false)) && !watch.fit()->what.empty();
-  if (setup.check == RigCheck::kStrict && rig_news) return Error{ErrorCode::kBadInput, watch.fit()->what};
-  return {};
+  if (const RigFit* const news = next == Next::kNew ? watch.see(pair, source().still()) : watch.end()) rig_news = news->what;
+  if (setup.check != RigCheck::kStrict) return {};
+  rig_news.clear();  // the error says it, with the same frame in every run
+  const auto& fit = watch.fit();
+  return fit && !fit->what.empty() ? Result<void>(Error{ErrorCode::kBadInput, fit->what}) : Result<void>();
 }
 
 void Pipeline::State::keep(std::span<const Person> found) {
@@ -223,7 +226,7 @@ Result<Next> Pipeline::next() {
   DUO_TRY_ASSIGN(const Next next, s.frames->next(s.last));
   if (next == Next::kNew) {
     s.pair = s.last.pair;
-    s.repeats.see(*s.pair);
+    s.pictures.see(*s.pair);
   }
   DUO_TRY(s.look_at_rig(next));
   if (next != Next::kNew) return next;
@@ -244,7 +247,7 @@ const Tracker* Pipeline::tracker() const { return state_->tracker.get(); }
 TrackTimes Pipeline::times() const { return {state_->last.engine_ms, state_->tracker_ms}; }
 std::string Pipeline::event() const { return state_->last.event; }
 const std::optional<RigFit>& Pipeline::rig_fit() const { return state_->watch.fit(); }
-std::string Pipeline::rig_news() const { return state_->rig_news ? rig_fit()->what : std::string(); }
+const std::string& Pipeline::rig_news() const { return state_->rig_news; }
 
 TrackedFrame Pipeline::tracked() const {
   const Pair& pair = *state_->pair;
@@ -360,7 +363,7 @@ void Pipeline::close_source() {
   s.frames.reset();
   s.waiting.reset();
   s.pair.reset();
-  s.repeats = {};
+  s.pictures = {};
   s.last = {};
   s.people.clear();
 }
@@ -388,8 +391,8 @@ std::int64_t Pipeline::dropped() const {
   return state_->source().dropped() + (state_->frames ? state_->frames->left_out() : 0);
 }
 std::string Pipeline::warning() const {
-  const std::string of_source = state_->source().warning(), repeats = state_->repeats.warning(live());
-  return of_source + (of_source.empty() || repeats.empty() ? "" : "; ") + repeats;
+  const std::string of_source = state_->source().warning(), pictures = state_->pictures.warning(live());
+  return of_source + (of_source.empty() || pictures.empty() ? "" : "; ") + pictures;
 }
 
 }  // namespace duo

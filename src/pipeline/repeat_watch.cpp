@@ -13,6 +13,7 @@ constexpr int kGrid_px = 8;
 constexpr const char* kSides[] = {"left", "right"};
 
 enum class Change : std::uint8_t { kNone, kLittle, kMotion };
+constexpr int kStep = 16;  // levels: above the noise of cameras and of coding
 
 void take_grid(View<const Rgb8> picture, std::vector<std::uint8_t>& into) {
   into.clear();
@@ -21,7 +22,6 @@ void take_grid(View<const Rgb8> picture, std::vector<std::uint8_t>& into) {
 }
 
 Change change_of(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now) {
-  constexpr int kStep = 16;            // levels: above the noise of cameras and of coding
   constexpr std::size_t kShare = 200;  // one of so many pixels: an arm, a head
   constexpr std::size_t kStill = 8 * kShare;
   constexpr std::size_t kQuiet = 4;  // a quarter of a level in the mean, by coding anew; cameras' noise is more
@@ -34,6 +34,13 @@ Change change_of(const std::vector<std::uint8_t>& before, const std::vector<std:
   }
   if (sum * kQuiet <= now.size() && steps * kStill <= now.size()) return Change::kNone;
   return steps * kShare >= now.size() ? Change::kMotion : Change::kLittle;
+}
+
+double motion_between(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now) {
+  int sum = 0;
+  for (std::size_t i = 0; i < std::min(before.size(), now.size()); ++i)
+    if (const int by = std::abs(now[i] - before[i]); by > kStep) sum += by;
+  return sum;
 }
 
 /// A covered lens, a picture without light: it looks the same however it was taken.
@@ -51,6 +58,7 @@ void RepeatWatch::see(const Pair& pair) {
   for (std::size_t i = 0; i < 2; ++i) {
     take_grid((i == 0 ? pair.left : pair.right).pixels.view(), now_);
     changes[i] = is_flat(now_) ? Change::kLittle : change_of(sides_[i].before, now_);
+    motion_[i] = motion_between(sides_[i].before, now_);
     std::swap(sides_[i].before, now_);
   }
   moved_ += changes[0] == Change::kMotion || changes[1] == Change::kMotion;

@@ -18,6 +18,8 @@ namespace duo {
 class RepeatWatch {
  public:
   void see(const Pair& pair);
+  /// How much moved in either picture since the pair before: how many levels the grid's pixels went by, without noise.
+  const std::array<double, 2>& motion() const { return motion_; }
   /// Live: of a camera that hangs now. Of files: how many pictures were repeated, where they are many. Empty: nothing.
   std::string warning(bool live) const;
 
@@ -27,6 +29,7 @@ class RepeatWatch {
     int repeated = 0, in_a_row = 0, most_in_a_row = 0;
   };
   std::array<Side, 2> sides_;
+  std::array<double, 2> motion_{};
   std::vector<std::uint8_t> now_;
   int moved_ = 0;  // pairs in which a picture shows that something moved
 };

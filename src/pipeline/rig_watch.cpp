@@ -4,21 +4,35 @@
 #include <string>
 #include <utility>
 
+#include "calib/rig_fitting.h"
+
 namespace duo {
 namespace {
 
 constexpr int kWatchedPairs = 3;
-constexpr TimeNs kBetween_ns = 300'000'000, kFirstKnown_ns = 100'000'000, kKnown_ns = 900'000'000, kAgain_ns = 60'000'000'000;
+constexpr TimeNs kBetween_ns = 200'000'000, kFirstCounts_ns = 100'000'000, kAllCount_ns = 800'000'000,
+                 kAgain_ns = 60'000'000'000;
+
+RigJudge judge_of_rig(const std::optional<Rig>& rig, Size size, SceneSearch most) {
+  auto fitting = std::make_shared<RigFitting>(rig, size, 1, most);
+  return {[fitting](const std::shared_ptr<const Pair>& first) { return fitting->by_first(first); },
+          [fitting](std::span<const std::shared_ptr<const Pair>> others) { return fitting->by_all(others); }};
+}
 
 }  // namespace
 
-bool RigWatch::see(const std::shared_ptr<const Pair>& pair, bool last) {
-  if (!on_) return false;
+RigWatch::RigWatch(std::optional<Rig> rig, bool live, bool quick)
+    : RigWatch([rig = std::move(rig), most = quick ? SceneSearch::kQuick : SceneSearch::kThorough](
+                   Size size) { return judge_of_rig(rig, size, most); },
+               live) {}
+
+const RigFit* RigWatch::see(const std::shared_ptr<const Pair>& pair, bool last) {
+  if (!on_) return nullptr;
   if (!std::exchange(begun_, true)) {
     start_ns_ = pair->left.t_ns;
     looked_at_ = 1;
-    fitting_ = std::make_shared<RigFitting>(rig_, pair->left.pixels.size(), 1);
-    start(Step::kFirst, [fitting = fitting_, pair] { return fitting->by_first(pair); });
+    judge_ = judge_of_(pair->left.pixels.size());
+    start(Step::kFirst, [judge = judge_.by_first, pair] { return judge(pair); });
   }
   const TimeNs since_ns = pair->left.t_ns - start_ns_;
   const bool gathers = step_ == Step::kFirst || step_ == Step::kGather;
@@ -26,21 +40,29 @@ bool RigWatch::see(const std::shared_ptr<const Pair>& pair, bool last) {
     others_.push_back(pair);
     ++looked_at_;
   }
-  if (step_ == Step::kFirst && (last || is_known(since_ns, kFirstKnown_ns)) && take()) return true;
-  if (step_ == Step::kGather && (last || looked_at_ == kWatchedPairs || since_ns >= kKnown_ns)) start_all();
-  if (step_ == Step::kAll && (last || is_known(since_ns, kKnown_ns))) return take();
+  const RigFit* const news = step(since_ns, last);
   if (live_ && step_ == Step::kDone && since_ns >= kAgain_ns) begun_ = false;
-  return false;
+  return news;
 }
 
-bool RigWatch::end() {
-  if (step_ == Step::kFirst && take()) return true;
-  if (step_ == Step::kGather) start_all();
-  return step_ == Step::kAll && take();
+const RigFit* RigWatch::end() { return step(0, true); }
+
+/// As far as it goes without waiting; of files, where a pair is there by which it counts, further.
+const RigFit* RigWatch::step(TimeNs since_ns, bool last) {
+  const auto counts = [&](TimeNs from_ns) { return last || (!live_ && since_ns >= from_ns); };
+  const RigFit* news = nullptr;
+  if (step_ == Step::kFirst && (counts(kFirstCounts_ns) || ended())) news = take(kFirstCounts_ns);
+  if (step_ == Step::kGather && (last || looked_at_ == kWatchedPairs || since_ns >= kAllCount_ns)) start_all();
+  if (step_ == Step::kAll && (counts(kAllCount_ns) || ended())) news = take(kAllCount_ns);
+  if (step_ == Step::kKnown && (live_ || counts(counts_from_ns_))) {
+    fit_ = **found_;
+    step_ = Step::kDone;
+  }
+  return news;
 }
 
 void RigWatch::start_all() {
-  start(Step::kAll, [fitting = fitting_, others = std::move(others_)] { return std::optional(fitting->by_all(others)); });
+  start(Step::kAll, [judge = judge_.by_all, others = std::move(others_)] { return std::optional(judge(others)); });
 }
 
 void RigWatch::start(Step step, std::function<std::optional<RigFit>()> judge) {
@@ -57,23 +79,19 @@ void RigWatch::start(Step step, std::function<std::optional<RigFit>()> judge) {
     *found_ = RigFit();
 }
 
-/// Whether what the worker found counts from now on.
-bool RigWatch::is_known(TimeNs since_ns, TimeNs of_files_ns) {
-  return live_ ? !worker_.started() || worker_.ends_within(std::chrono::nanoseconds(0)) : since_ns >= of_files_ns;
-}
+bool RigWatch::ended() const { return !worker_.started() || worker_.ends_within(std::chrono::nanoseconds(0)); }
 
-/// What the worker found. Whether it is news.
-bool RigWatch::take() {
+/// What the worker found, where it is another verdict than was told.
+const RigFit* RigWatch::take(TimeNs counts_from_ns) {
   const bool by_first = step_ == Step::kFirst;
   if (worker_.started() && !std::exchange(worker_, {}).join()) *found_ = RigFit();  // it had no memory: nothing is found
-  step_ = by_first && !*found_ ? Step::kGather : Step::kDone;
-  if (step_ == Step::kGather) return false;
+  step_ = by_first && !*found_ ? Step::kGather : Step::kKnown;
+  if (step_ == Step::kGather) return nullptr;
   others_.clear();
-  fitting_.reset();
-  const RigFit found = found_->value_or(RigFit());
-  const bool news = !fit_ || fit_->verdict != found.verdict;
-  fit_ = found;
-  return news;
+  judge_ = {};
+  counts_from_ns_ = counts_from_ns;
+  const RigFit& found = **found_;
+  return std::exchange(told_, found.verdict) == found.verdict ? nullptr : &found;
 }
 
 void widen(std::span<Person> people, const Rectified& rectified, double disparity_sigma_px) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <new>
 #include <thread>
 
 #include "duoptic/pipeline.h"
@@ -58,44 +59,56 @@ Pipeline watching(std::unique_ptr<PairSource> pairs, RigCheck check) {
   return std::move(*pipeline);
 }
 
-/// The number of the call to next() that brought news, from 0; -1: none did.
-int news_at(Pipeline& pipeline) {
-  int at = -1;
+/// Numbers of calls to next(), from 0; -1: none did.
+struct Told {
+  int news = -1, fit = -1;  // that brought news; from which on there is a fit
+};
+
+Told told_by(Pipeline& pipeline) {
+  Told told;
+  std::string news;
   for (int i = 0;; ++i) {
     const auto next = pipeline.next();
     EXPECT_TRUE(next) << next.error().what;
     if (!pipeline.rig_news().empty()) {
-      EXPECT_EQ(at, -1) << "twice";
-      EXPECT_EQ(pipeline.rig_news(), pipeline.rig_fit()->what);
-      at = i;
+      EXPECT_EQ(told.news, -1) << "twice";
+      told.news = i;
+      news = pipeline.rig_news();
     }
-    if (!next || *next != Next::kNew) return at;
+    if (told.fit < 0 && pipeline.rig_fit()) told.fit = i;
+    if (next && *next == Next::kNew) continue;
+    EXPECT_EQ(news, pipeline.rig_fit() ? pipeline.rig_fit()->what : "");
+    return told;
   }
 }
 
-TEST(RigWatch, OfFilesItIsToldWithTheSamePairInEveryRun) {
+TEST(RigWatch, OfFilesItCountsFromTheSamePairOnInEveryRun) {
+  const auto expect = [](std::unique_ptr<PairSource> pairs, int counts_at) {
+    Pipeline pipeline = watching(std::move(pairs), RigCheck::kTell);
+    const Told told = told_by(pipeline);
+    EXPECT_EQ(told.fit, counts_at);
+    EXPECT_GE(told.news, 0);
+    EXPECT_LE(told.news, counts_at);  // as soon as it is known
+    return *pipeline.rig_fit();
+  };
   for (int run = 0; run < 2; ++run) {
-    Pipeline longer = watching(std::make_unique<TenASecond>(15, rolled_rig()), RigCheck::kTell);
-    EXPECT_EQ(news_at(longer), 1);  // 0.1 s after the first, which is enough
-    EXPECT_EQ(longer.rig_fit()->verdict, RigVerdict::kRecalibrate);
-    EXPECT_GT(longer.rig_fit()->disparity_sigma_px, 0.5);
-    Pipeline doubtful = watching(std::make_unique<TenASecond>(15, rolled_rig(0.35)), RigCheck::kTell);
-    EXPECT_EQ(news_at(doubtful), 9);  // 0.9 s after the first, by three
-    EXPECT_NE(doubtful.rig_fit()->verdict, RigVerdict::kGood);
+    const RigFit sure = expect(std::make_unique<TenASecond>(8, rolled_rig()), 1);  // 0.1 s after the first, which is enough
+    EXPECT_EQ(sure.verdict, RigVerdict::kRecalibrate);
+    EXPECT_GT(sure.disparity_sigma_px, 0.5);
+    const RigFit doubtful = expect(std::make_unique<TenASecond>(10, rolled_rig(0.35)), 8);  // 0.8 s after the first, by three
+    EXPECT_NE(doubtful.verdict, RigVerdict::kGood);
   }
-  Pipeline shorter = watching(std::make_unique<TenASecond>(4, rolled_rig(0.35)), RigCheck::kTell);
-  EXPECT_EQ(news_at(shorter), 4);  // its end
-  Pipeline still = watching(std::make_unique<TenASecond>(1, rolled_rig()), RigCheck::kTell);
-  EXPECT_EQ(news_at(still), 0);
+  expect(std::make_unique<TenASecond>(4, rolled_rig(0.35)), 4);  // its end
+  expect(std::make_unique<TenASecond>(1, rolled_rig()), 0);
 }
 
 TEST(RigWatch, TheRightRigIsNoNews) {
   Pipeline good = watching(std::make_unique<TenASecond>(12, watched_room().rig), RigCheck::kStrict);
-  EXPECT_EQ(news_at(good), -1);
+  EXPECT_EQ(told_by(good).news, -1);
   ASSERT_TRUE(good.rig_fit());
   EXPECT_EQ(good.rig_fit()->verdict, RigVerdict::kGood);
   Pipeline untold = watching(std::make_unique<TenASecond>(12, rolled_rig()), RigCheck::kNone);
-  EXPECT_EQ(news_at(untold), -1);
+  EXPECT_EQ(told_by(untold).news, -1);
   EXPECT_FALSE(untold.rig_fit());
 }
 
@@ -112,7 +125,7 @@ TEST(RigWatch, LiveItIsLookedAtAgainEveryMinute) {
   /// A second from `t_s` on, then as long as it takes, but no minute of the source's time.
   const auto news_from = [&](double t_s, bool swapped) {
     for (int i = 0; i < 2000; ++i) {
-      if (watch.see(pair_at(t_s + 0.1 * std::min(i, 10), swapped), false)) return true;
+      if (watch.see(pair_at(t_s + 0.1 * std::min(i, 10), swapped), false) != nullptr) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     return false;
@@ -121,6 +134,41 @@ TEST(RigWatch, LiveItIsLookedAtAgainEveryMinute) {
   EXPECT_EQ(watch.fit()->verdict, RigVerdict::kGood);
   EXPECT_TRUE(news_from(61, true));
   EXPECT_EQ(watch.fit()->verdict, RigVerdict::kRecalibrate);
+}
+
+/// What comes of judges of which the first step, or the second, throws where it is asked to; pairs of 0.1 s each.
+std::optional<RigFit> fit_where_thrown(bool by_first, bool by_all) {
+  static const RigFit wrong{RigVerdict::kRecalibrate, "wrong"};
+  const auto judge_of = [=](Size) -> RigJudge {
+    return {[=](const std::shared_ptr<const Pair>&) -> std::optional<RigFit> {
+              if (by_first) throw std::bad_alloc();
+              return std::nullopt;
+            },
+            [=](std::span<const std::shared_ptr<const Pair>> others) {
+              EXPECT_EQ(others.size(), 2u);
+              if (by_all) throw std::bad_alloc();
+              return wrong;
+            }};
+  };
+  RigWatch watch(judge_of, false);
+  for (int i = 0; i <= 8; ++i) {
+    auto pair = std::make_shared<Pair>();
+    pair->left.t_ns = i * TimeNs{100'000'000};
+    watch.see(pair, false);
+  }
+  return watch.fit();
+}
+
+TEST(RigWatch, AWorkerThatFailsFindsNothing) {
+  for (const auto& [by_first, by_all] : {std::pair(true, false), std::pair(false, true)}) {
+    const auto fit = fit_where_thrown(by_first, by_all);
+    ASSERT_TRUE(fit);
+    EXPECT_EQ(fit->verdict, RigVerdict::kGood);
+    EXPECT_EQ(fit->what, "");
+  }
+  const auto whole = fit_where_thrown(false, false);
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->what, "wrong");
 }
 
 TEST(RigWatch, StrictEndsTheRun) {

@@ -1,0 +1,67 @@
+#include "pipeline/offset_watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+namespace duo {
+namespace {
+
+constexpr std::size_t kMostPairs = 900, kFewestPairs = 45;
+
+/// Pearson's. 0 where one of them does not change.
+double correlation(std::span<const double> a, std::span<const double> b) {
+  const auto n = static_cast<double>(a.size());
+  double mean_a = 0, mean_b = 0, aa = 0, bb = 0, ab = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) mean_a += a[i] / n, mean_b += b[i] / n;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double da = a[i] - mean_a, db = b[i] - mean_b;
+    aa += da * da, bb += db * db, ab += da * db;
+  }
+  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
+}
+
+}  // namespace
+
+void OffsetWatch::see(TimeNs t_ns, const std::array<double, 2>& motion) {
+  if (motion_[0].size() == kMostPairs) return;
+  if (motion_[0].empty()) first_ns_ = t_ns;
+  last_ns_ = t_ns;
+  // Roots: a large motion does not outweigh all others.
+  for (std::size_t i = 0; i < 2; ++i) motion_[i].push_back(std::sqrt(motion[i]));
+}
+
+std::string OffsetWatch::warning() const {
+  constexpr double kFits = 0.8, kClearly = 0.3, kFarthest_s = 3;
+  constexpr int kNear = 1;  // pictures: cameras in step are up to half a one apart
+  const std::span<const double> left = motion_[0], right = motion_[1];
+  const auto pairs = static_cast<int>(left.size());
+  if (left.size() < kFewestPairs || last_ns_ <= first_ns_) return {};
+  const double frame_s = static_cast<double>(last_ns_ - first_ns_) * 1e-9 / (pairs - 1);
+  const int farthest = std::min(pairs / 2, static_cast<int>(kFarthest_s / frame_s));
+  // The right video's picture i shows what the left one's picture i + later does.
+  const auto fit = [&](int later) {
+    const auto both = static_cast<std::size_t>(pairs - std::abs(later)), of_left = static_cast<std::size_t>(std::max(0, later)),
+               of_right = static_cast<std::size_t>(std::max(0, -later));
+    return correlation(left.subspan(of_left, both), right.subspan(of_right, both));
+  };
+  double near = 0, best = 0;
+  int best_later = 0;
+  for (int later = -farthest; later <= farthest; ++later) {
+    const double here = fit(later);
+    if (std::abs(later) <= kNear) near = std::max(near, here);
+    if (here > best) best = here, best_later = later;
+  }
+  if (best < kFits || best - near < kClearly) return {};
+  const double later_ms = 1000 * best_later * frame_s;
+  return fmt::format(
+      "the right video seems to have begun {:.0f} ms {} than the left one, and depth of what moves is wrong: what moves fits "
+      "with "
+      "--skew-ms {:.0f}, added to any that was given",
+      std::abs(later_ms), later_ms > 0 ? "later" : "earlier", later_ms);
+}
+
+}  // namespace duo
