@@ -294,7 +294,7 @@ TEST(RigFit, LargePicturesAreJudgedAsTheirCopies) {
   ASSERT_TRUE(fit.scene);
   EXPECT_GT(fit.scene->points, 100);
   EXPECT_LT(fit.scene->row_px, 1);  // a sixth of a pixel of the small ones
-  expect_told(rig_fit(right_turned(rig, turn(0.3, 0, 0)), pairs, 2), "tilt -0.3");
+  expect_told(rig_fit(right_turned(rig, turn(0.3, 0, 0)), pairs, 2), "a camera was turned by tilt -0.");
 }
 
 TEST(RigFit, BothPicturesOnTheirSide) {
