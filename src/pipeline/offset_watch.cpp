@@ -28,7 +28,10 @@ double correlation(std::span<const double> a, std::span<const double> b) {
 
 void OffsetWatch::see(TimeNs t_ns, const std::array<double, 2>& motion) {
   if (motion_[0].size() == kMostPairs) return;
-  if (motion_[0].empty()) first_ns_ = t_ns;
+  if (motion_[0].empty()) {
+    first_ns_ = t_ns;
+    for (auto& side : motion_) side.reserve(kMostPairs);  // no frame after this one allocates
+  }
   last_ns_ = t_ns;
   // Roots: a large motion does not outweigh all others.
   for (std::size_t i = 0; i < 2; ++i) motion_[i].push_back(std::sqrt(motion[i]));
