@@ -18,10 +18,10 @@ namespace duo {
 /// value minus the right one at that place, linear between its pixels. g: mean of both views' central differences there, the
 /// right view's linear between pixels, too. A tap with |e| >= kMostDifference does not count: it sees something else. Over the
 /// taps in the columns x +- kRadius and in the pair of rows 2k, 2k + 1 of the pixel and the kRadius / 2 pairs above and below,
-/// each at its own disparity, so that a slant changes nothing: step = -2 sum(e g w) / sum(g^2 w + 1/20), rounded to 1/16 px and
-/// held to +-kMost_q4; the result is held to 0 .. max_disparity - 1. w = 1 / (g^2 + 4): paths flatten where there is little to
-/// see, and there gradients of shading must not be outvoted by a few strong ones, whose disparities are right already. These
-/// still hold the others back, and noise in g makes steps short, hence 2. Where there is no gradient nothing changes.
+/// each at its own disparity, so that a slant changes nothing: step = -5/2 sum(e g w) / sum(g^2 w + 1/20), rounded to 1/16 px
+/// and held to +-kMost_q4; the result is held to 0 .. max_disparity - 1. w = 1 / (g^2 + 8): paths flatten where there is little
+/// to see, and there gradients of shading must not be outvoted by a few strong ones, whose disparities are right already. These
+/// still hold the others back, and noise in g makes steps short, hence 5/2. Where there is no gradient nothing changes.
 ///
 /// Shape    all H x W; dst is not the same memory as d_q4
 /// Units    d_q4 1/16 px, Disparity::kNone = hole, which stays one; e in gray levels, g in those per px
@@ -62,7 +62,7 @@ struct LucasKanadeScratch {
   static constexpr int kRows = LucasKanade::kRadius + 1, kBefore = 32;  // of taps in use; columns around a row
   struct Thread {
     Image<std::int16_t> pull, weight;  // of taps of a pair of rows: [row / 2 % kRows]
-    Image<std::int32_t> sums;          // of both over the rows of the window; and last the steps of a pair of rows
+    Image<std::int32_t> sums;          // of both over the rows of the window, of five columns of them; last the steps
   };
   std::vector<Thread> threads;
 };

@@ -11,18 +11,18 @@ namespace duo {
 
 const int kLucasKanadeRadius = 12;         // columns and rows of the window to each side
 const int kLucasKanadeMostDifference = 8;  // gray levels
-const int kLucasKanadeMost_q4 = 8;         // 1/16 px
+const int kLucasKanadeMost_q4 = 6;         // 1/16 px
 
-// g w in 1/2^14, of g >= 0 in 1/4: at most 256, so that with e of 1/16 a tap fits 16 bits.
+// g w in 1/2^14, of g >= 0 in 1/4: at most 181, so that with e of 1/16 a tap fits 16 bits.
 DUO_INLINE int lucas_kanade_pull(int g_q2) {
-  const int most = g_q2 * g_q2 + 64;
+  const int most = g_q2 * g_q2 + 128;
   return (4096 * g_q2 + most / 2) / most;
 }
 
-// g^2 w + 1/20 in 1/2 of 1/1024: so the quotient of the sums is two steps in 1/16 px.
+// g^2 w + 1/20 in 2/5 of 1/1024: so the quotient of the sums is two and a half steps in 1/16 px.
 DUO_INLINE int lucas_kanade_weight(int g_q2) {
-  const int square = g_q2 * g_q2, most = square + 64;
-  return (512 * square + most / 2) / most + 26;
+  const int square = g_q2 * g_q2, most = square + 128;
+  return (410 * square + most / 2) / most + 20;
 }
 
 #undef DUO_INLINE

@@ -56,7 +56,7 @@ class Gradients {
   }
 
  private:
-  enum { kPull, kWeight, kSteps };  // rows of sums
+  enum { kPull, kWeight, kPullOfFive, kWeightOfFive, kSteps };  // rows of sums
 
   static int turn(int y) { return y / 2 % kRows; }
 
@@ -67,7 +67,10 @@ class Gradients {
     const int n = static_cast<int>(hn::Lanes(many));
     int x = 1;
     for (; x + n < w_; x += n) tap(many, y, x);
-    for (; x + 1 < w_; ++x) tap(one, y, x);
+    if (x > 1 && x + 1 < w_)
+      tap(many, y, w_ - 1 - n);  // some of them once more
+    else
+      for (; x + 1 < w_; ++x) tap(one, y, x);
   }
 
   template <class D32>
@@ -122,17 +125,31 @@ class Gradients {
     }
   }
 
+  // 25 columns are five times five.
+  void add_five(int from, int to) {
+    const D d;
+    for (int x = -kBefore / 2; x < w_ + kRadius; x += static_cast<int>(hn::Lanes(d))) {
+      const std::int32_t* const at = t_.sums.row(from) + kBefore + x;
+      const auto outer = hn::Add(hn::LoadU(d, at - 2), hn::LoadU(d, at + 2)),
+                 inner = hn::Add(hn::LoadU(d, at - 1), hn::LoadU(d, at + 1));
+      hn::StoreU(hn::Add(hn::Add(outer, inner), hn::LoadU(d, at)), d, t_.sums.row(to) + kBefore + x);
+    }
+  }
+
   void step_row() {
+    static_assert(2 * kRadius + 1 == 5 * 5);
     const D d;
     const auto constant = [&](int v) HWY_ATTR { return hn::Set(d, v); };
+    add_five(kPull, kPullOfFive);
+    add_five(kWeight, kWeightOfFive);
     for (int x = 0; x < w_; x += static_cast<int>(hn::Lanes(d))) {
       const auto around = [&](int k) HWY_ATTR {
         const std::int32_t* const at = t_.sums.row(k) + kBefore + x;
-        auto out = hn::LoadU(d, at - kRadius);
-        for (int i = 1 - kRadius; i <= kRadius; ++i) out = hn::Add(out, hn::LoadU(d, at + i));
+        auto out = hn::LoadU(d, at);
+        for (const int i : {-10, -5, 5, 10}) out = hn::Add(out, hn::LoadU(d, at + i));
         return out;
       };
-      const auto pull = around(kPull), weight = around(kWeight), two = hn::ShiftLeft<1>(hn::Abs(pull)),
+      const auto pull = around(kPullOfFive), weight = around(kWeightOfFive), two = hn::ShiftLeft<1>(hn::Abs(pull)),
                  two_weights = hn::ShiftLeft<1>(weight);
       // One less than what must be reached; without a tap all is 0.
       auto size = hn::Zero(d), below = hn::Sub(hn::Max(weight, constant(1)), constant(1));
@@ -183,7 +200,7 @@ LucasKanadeScratch::LucasKanadeScratch(Size size, int count) {
   const int padded = kBefore + size.width + kBefore;
   for (int i = 0; i < count; ++i)
     threads.push_back(
-        {Image<std::int16_t>({padded, kRows}), Image<std::int16_t>({padded, kRows}), Image<std::int32_t>({padded, 3})});
+        {Image<std::int16_t>({padded, kRows}), Image<std::int16_t>({padded, kRows}), Image<std::int32_t>({padded, 5})});
 }
 
 void lucas_kanade(Pool& pool, const LucasKanade& in, LucasKanadeScratch& scratch, View<std::uint16_t> dst) {

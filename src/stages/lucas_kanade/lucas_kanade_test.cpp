@@ -34,50 +34,51 @@ struct ZigzagPair {
   }
 };
 
-// By hand: 4096 * 64 / (64 * 64 + 64) = 63.02, 512 * 64 * 64 / (64 * 64 + 64) = 504.1; 4096 * 8 / 128 = 256.
+// By hand: 4096 * 64 / (64 * 64 + 128) = 62.06, 410 * 64 * 64 / (64 * 64 + 128) = 397.6;
+// 4096 * 8 / 192 = 170.7, 410 * 64 / 192 = 136.7.
 TEST(LucasKanade, GradientsCountAlmostAlike) {
   EXPECT_EQ(lucas_kanade_pull(0), 0);
-  EXPECT_EQ(lucas_kanade_weight(0), 26);
-  EXPECT_EQ(lucas_kanade_pull(8), 256);
-  EXPECT_EQ(lucas_kanade_weight(8), 256 + 26);
-  EXPECT_EQ(lucas_kanade_pull(64), 63);
-  EXPECT_EQ(lucas_kanade_weight(64), 504 + 26);
+  EXPECT_EQ(lucas_kanade_weight(0), 20);
+  EXPECT_EQ(lucas_kanade_pull(8), 171);
+  EXPECT_EQ(lucas_kanade_weight(8), 137 + 20);
+  EXPECT_EQ(lucas_kanade_pull(64), 62);
+  EXPECT_EQ(lucas_kanade_weight(64), 398 + 20);
 }
 
 // By hand: column 8, whose taps are the columns 3 .. 12. Going up e is -64, going down 64; g is 64, where the left view turns
-// 56, where both do 8. So of ten taps five have -64 * 63 and 530; three -64 * 72 and 528; two -64 * 256 and 282: in all
-// -66752 and 4798, and (2 * 66752 / 4798 + 1) / 2 = 14 sixteenths, of which 8 are taken: the turns say most.
+// 56, where both do 8. So of ten taps five have -64 * 62 and 418; three -64 * 70 and 414; two -64 * 171 and 157: in all
+// -55168 and 3646, and (2 * 55168 / 3646 + 1) / 2 = 15 sixteenths, of which 6 are taken: the turns say most.
 TEST(LucasKanade, StepsToWhereBothViewsAreAlike) {
   const ZigzagPair pair(2.25, 32);
   const LucasKanade in{pair.left, pair.right, pair.d_q4, 16};
-  const int pull[] = {-64 * 72, -64 * 63, -64 * 63, -64 * 256, -64 * 72, -64 * 63, -64 * 63, -64 * 256, -64 * 72, -64 * 63};
-  const int weight[] = {528, 530, 530, 282, 528, 530, 530, 282, 528, 530};
+  const int pull[] = {-64 * 70, -64 * 62, -64 * 62, -64 * 171, -64 * 70, -64 * 62, -64 * 62, -64 * 171, -64 * 70, -64 * 62};
+  const int weight[] = {414, 418, 418, 157, 414, 418, 418, 157, 414, 418};
   for (int i = 0; i < 10; ++i) {
     const LucasKanadeSums tap = ref::lucas_kanade_tap(in, 0, 3 + i);
     EXPECT_EQ(tap.pull, pull[i]) << i;
     EXPECT_EQ(tap.weight, weight[i]) << i;
   }
-  EXPECT_EQ(pair.stepped().at(0, 8), 40);
+  EXPECT_EQ(pair.stepped().at(0, 8), 38);
   EXPECT_EQ(ZigzagPair(2, 32).stepped().at(0, 8), 32);
 }
 
-// By hand: 2 * 1000 / 110 = 18, nine sixteenths: half a pixel is the most. And the range is not left.
+// By hand: 2 * 1000 / 110 = 18, nine sixteenths: six are the most. And the range is not left.
 TEST(LucasKanade, IsHeld) {
-  EXPECT_EQ((LucasKanadeSums{-1000, 110}).step_q4(), 8);
+  EXPECT_EQ((LucasKanadeSums{-1000, 110}).step_q4(), 6);
   EXPECT_EQ((LucasKanadeSums{1000, 400}).step_q4(), -3);
   EXPECT_EQ(LucasKanadeSums().step_q4(), 0);
   EXPECT_EQ(ZigzagPair(2.25, 32).stepped(3).at(0, 8), 32);
 }
 
-// A shaded surface without any texture tells its place, too: -2 levels on a slope of 16 are an eighth of a pixel, and twice
-// that: (2 * 32 * 63 / 530 + 1) / 2 = 4 sixteenths.
+// A shaded surface without any texture tells its place, too: -2 levels on a slope of 16 are an eighth of a pixel, and two
+// and a half times that: (2 * 32 * 62 / 418 + 1) / 2 = 5 sixteenths.
 TEST(LucasKanade, ShadingTellsThePlace) {
   ZigzagPair slope(2, 32);
   for (const int y : {0, 1})
     for (int x = 0; x < 14; ++x)
       slope.right.at(y, x) = static_cast<std::uint8_t>(16 * x),
                         slope.left.at(y, x) = static_cast<std::uint8_t>(std::max(16 * x - 34, 0));
-  EXPECT_EQ(slope.stepped().at(0, 8), 36);
+  EXPECT_EQ(slope.stepped().at(0, 8), 37);
 }
 
 TEST(LucasKanade, WhatSeesSomethingElseDoesNotCount) {
