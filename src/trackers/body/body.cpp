@@ -196,6 +196,7 @@ void Body::lift(Scene& scene) const {
 void Body::update(const FrameView& frame, const Scene& scene, const Choices& chosen) {
   constexpr double kStepGain = 0.5, kFar_off_m = 0.12, kFar_off_px = 6, kTooFar_m = 0.15;
   constexpr int kSights = 2, kUnsureSights = 6;
+  constexpr double kMostOnBack = 5;  // ticks
   int inside = 0, seen = 0;
   ++age_;
   const double ticks = age_ == 1 ? 1 : frame.ticks();  // before the first frame nothing was hidden for long
@@ -220,6 +221,8 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     const bool believed = state.sure || age_ == 1 || (sight != HandSight::kAbsent && state.shown >= enough);
     state.sure = state.seen && !hidden_by_arm && believed && frame.shows(point.at_px) && frame.shows(at);
     state.hidden = state.seen ? 0 : state.hidden + ticks;
+    state.astray = state.seen ? 0 : state.astray + ticks;
+    if (scene.off_back_m(id, p)) state.astray = std::min(state.astray, kMostOnBack);
     const Vec3 off = p - scene.expected[id].p;
     // What the network guesses of a hidden limb tells nothing of its speed.
     if (was_hidden && state.seen)
@@ -298,6 +301,7 @@ void Body::miss(const FrameView& frame, bool covered) {
     state.seen = state.sure = false;
     state.shown = 0;
     state.hidden += frame.ticks();
+    state.astray += frame.ticks();
   }
   pace_ = keeps * pace_;
   complete(fitted_.places);
@@ -350,7 +354,7 @@ void Body::publish(const FrameView& frame, Person& person) const {
     Covariance3 c = fitted_.covariance[id];
     if (!state.sure) {
       const bool held = is_root(id) && missed_ == 0;  // by the rest of the trunk
-      const double grown = square(std::min(0.035 + 0.25 * std::min(state.hidden, 30.0) * kTick_s, held ? kHeld_m : 1));
+      const double grown = square(std::min(0.035 + 0.25 * std::min(state.astray, 30.0) * kTick_s, held ? kHeld_m : 1));
       c.xx += grown;
       c.yy += grown;
       c.zz += grown;

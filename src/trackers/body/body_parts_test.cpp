@@ -177,6 +177,29 @@ TEST(BodyFit, BonesHoldAHiddenJoint) {
   EXPECT_GT(fitted.covariance[kRightElbow].sigma_m(), fitted.covariance[kLeftElbow].sigma_m());
 }
 
+TEST(BodyFit, AForearmTakenForTooLongDoesNotPushAHiddenHandOffTheBack) {
+  // Both are hidden, 11 cm behind the plane of shoulders and hips, and guessed 15 cm behind that.
+  Places places = standing();
+  places[kLeftElbow] = {0.25, -0.19, 2.05};
+  places[kLeftWrist] = {0.08, -0.05, 2.11};
+  places[kLeftHand] = {0.03, -0.01, 2.11};
+  const auto off_m = [&](HandSight sight) {
+    Standing s(places);
+    Choices chosen;
+    choose(s.scene, chosen);
+    for (const JointId id : {kLeftWrist, kLeftHand}) {
+      const Vec3 guess = places[id] + Vec3{0, 0, 0.15};
+      chosen[id] = {guess, false, 0};
+      s.scene.expected[id] = {guess, 0.1, 10};
+    }
+    s.scene.hands[0] = sight;
+    Fitted fitted;
+    Fit().run(s.scene, chosen, {}, fitted);
+    return distance(fitted.places[kLeftWrist], places[kLeftWrist]);
+  };
+  EXPECT_LT(off_m(HandSight::kAbsent), 0.75 * off_m(HandSight::kSeen));
+}
+
 TEST(BodyFit, BonesGetTheirLengthsAndKeepTheirDirections) {
   const Places places = standing();
   const Lengths lengths(0.9);

@@ -3,8 +3,9 @@
 namespace duo::body {
 namespace {
 
-constexpr double kHidden = -2.5, kHiddenButVisible = -1.5, kHiddenButHandSeen = -4, kHandAbsent = -1, kHandOutside = -2.5;
-constexpr double kFreeSpace = -6, kIsTrunk = -7, kUnseen = -2, kInTrunk = -4;
+constexpr double kHidden = -2.5, kHiddenButVisible = -1.5, kHiddenButHandSeen = -4, kHandAbsent = -1, kHandOutside = -2.5,
+                 kHandBehind = -3;
+constexpr double kFreeSpace = -6, kIsTrunk = -7, kUnseen = -2, kInTrunk = -4, kMostOffBack = 2;
 
 /// About ln(share), without a library whose last bits differ from processor to processor.
 double log_share(double share) { return 2 * (share - 1) / (share + 1) * 1.3; }
@@ -38,16 +39,23 @@ double inside_trunk_score(const Scene& scene, JointId id, Vec3 p) {
   return front ? (above < *height && above > -behind ? kInTrunk : 0) : (above > *height && above < behind ? kInTrunk : 0);
 }
 
+/// The length of a bone alone leaves the depth of a hidden hand open: its forearm, taken for a tenth too long, points away from
+/// the cameras by half of its length.
+double off_back_score(const Scene& scene, JointId id, Vec3 p) {
+  const auto off = scene.off_back_m(id, p);
+  return off ? capped(*off, kBackSigma_m, kMostOffBack) : 0;
+}
+
 double hidden_score(const Scene& scene, JointId id) {
   double score = kHidden;
   score += kHiddenButVisible * share_of(scene.points[id].visibility, 0.6, 0.95);
-  if (is_hand_or_wrist(id) && scene.hands[is_left(id) ? 0 : 1] == HandSight::kSeen) score += kHiddenButHandSeen;
+  if (is_hand_or_wrist(id) && scene.sight_of(id) == HandSight::kSeen) score += kHiddenButHandSeen;
   return score;
 }
 
 /// How likely a surface over the trunk is the trunk's own, 0 .. 1.
 double trunk_share(const Scene& scene, JointId id, double skin_z) {
-  constexpr double kProud_m = 0.025, kBelow_m = 0.04, kBeforePlane_m = 0.08, kNoise_px = 0.25;
+  constexpr double kProud_m = 0.025, kArmProud_m = 0.08, kBelow_m = 0.04, kBeforePlane_m = 0.08, kNoise_px = 0.25;
   if (!is_arm(id)) return 0;
   const HandSight hand = scene.hands[is_left(id) ? 0 : 1];
   const bool elbow = id == JointId::kLeftElbow || id == JointId::kRightElbow;
@@ -58,20 +66,24 @@ double trunk_share(const Scene& scene, JointId id, double skin_z) {
   const bool front = dot(scene.trunk.front, scene.trunk.shoulders) < 0;
   const double above = scene.trunk.of(skin).z, proud = front ? above - *height : *height - above;
   const double noise = kNoise_px * scene.depth.m_per_px(skin_z);
-  if (hand == HandSight::kAbsent && !elbow && proud > -kBelow_m && (front ? above : -above) < kBeforePlane_m) return 1;
+  if (hand == HandSight::kAbsent && !elbow && proud > -kBelow_m &&
+      ((front ? above : -above) < kBeforePlane_m || proud < kArmProud_m))
+    return 1;
   if (proud > kProud_m + noise || proud < -kBelow_m - noise) return 0;
   // Of an elbow beside the trunk the network knows whether it is seen; of a hand behind the back it does not.
   return elbow ? 1 - share_of(scene.points[id].visibility, 0.6, 0.85) : 1;
 }
 
-/// What the network of hands says against a hand on a surface.
-double sight_score(const Scene& scene, JointId id) {
+/// What the network of hands says against a hand at a place on a surface. Behind the back, the network of bodies marks a hand
+/// where its arm goes in: what is seen there is the forearm.
+double sight_score(const Scene& scene, JointId id, Vec3 p) {
   const bool hand = id == JointId::kLeftHand || id == JointId::kRightHand;
   const bool wrist = id == JointId::kLeftWrist || id == JointId::kRightWrist;
   if (!hand && !wrist) return 0;
-  const HandSight sight = scene.hands[is_left(id) ? 0 : 1];
+  const HandSight sight = scene.sight_of(id);
   if (sight == HandSight::kOutside && hand) return kHandOutside;
-  return sight == HandSight::kAbsent ? kHandAbsent : 0;
+  if (sight != HandSight::kAbsent) return 0;
+  return hand && scene.off_back_m(id, p) ? kHandAbsent + kHandBehind : kHandAbsent;
 }
 
 /// Whether a place on a surface is on somebody else, who stands before this person, and is not where the joint is expected.
@@ -88,6 +100,17 @@ bool is_of_another(const Scene& scene, JointId id, Vec3 skin) {
 }
 
 }  // namespace
+
+std::optional<double> Scene::off_back_m(JointId id, Vec3 p) const {
+  constexpr double kHalfWidths = 0.6, kAbove = 0.1, kBelow = 1.3;  // the back: of the trunk's width and length
+  constexpr double kFacing = 0.7, kBehindPlane = 0.24, kArm_m = 0.03;
+  if (!is_hand_or_wrist(id) || sight_of(id) == HandSight::kSeen) return std::nullopt;
+  if (dot(trunk.front, normalized(trunk.shoulders)) > -kFacing) return std::nullopt;
+  const Vec3 q = trunk.of(p);
+  if (std::abs(q.x) > kHalfWidths * trunk.width_m || q.y < kAbove * trunk.length_m || q.y > kBelow * trunk.length_m || q.z > 0)
+    return std::nullopt;
+  return -q.z - kBehindPlane * width_m() - kArm_m;
+}
 
 double length_score(const Scene& scene, Bone bone, Vec3 a, Vec3 b) {
   constexpr double kLengthSigma_m = 0.025, kMostLength = 6;
@@ -113,7 +136,7 @@ void add_surfaces(const Scene& scene, JointId id, double most_expected, Candidat
     c.skin_z_m = surface.z_m;
     c.score = log_share(surface.share) +
               expected_score(scene.expected[id], c.p, most_expected / (1 + 0.5 * scene.expected[id].hidden));
-    c.score += sight_score(scene, id) + kUnseen * (1 - share_of(scene.points[id].visibility, 0.35, 0.7));
+    c.score += sight_score(scene, id, c.p) + kUnseen * (1 - share_of(scene.points[id].visibility, 0.35, 0.7));
     if (is_of_another(scene, id, on_ray(scene, id, surface.z_m))) c.score += kSameSurface;
     if (const double trunk = trunk_share(scene, id, surface.z_m); trunk > 0) {
       if (nearer) continue;
@@ -129,7 +152,7 @@ void add_surfaces(const Scene& scene, JointId id, double most_expected, Candidat
 void add_hidden(const Scene& scene, JointId id, Vec3 p, double most_expected, Candidates& out) {
   out.add({p,
            hidden_score(scene, id) + free_space_score(scene, id, p) + inside_trunk_score(scene, id, p) +
-               expected_score(scene.expected[id], p, most_expected),
+               off_back_score(scene, id, p) + expected_score(scene.expected[id], p, most_expected),
            0, false});
 }
 

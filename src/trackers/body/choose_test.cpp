@@ -30,6 +30,45 @@ TEST(BodyChoose, TheSurfaceThatFitsTheBonesWinsOverTheMedian) {
   EXPECT_LT(distance(chosen[kLeftElbow].p, places[kLeftElbow]), 0.005);
 }
 
+TEST(BodyChoose, AHandMarkedOnItsForearmBehindTheTrunkIsHidden) {
+  // The left forearm goes behind the trunk, 14 cm from its middle, where the network of bodies marks the hand as well.
+  Places places = standing();
+  places[kLeftElbow] = {0.25, -0.19, 2.05};
+  places[kLeftWrist] = {0.08, -0.05, 2.13};
+  places[kLeftHand] = {0.03, -0.01, 2.14};
+  Standing s(places);
+  for (const JointId id : {kLeftWrist, kLeftHand}) {
+    s.scene.points[id].at_px = s.scene.depth.geometry->project({0.14, -0.1, 2.1});
+    s.put(id, {{2.08, 0.5}});
+  }
+  const auto shown = [&](HandSight sight) {
+    s.scene.hands[0] = sight;
+    Choices chosen;
+    choose(s.scene, chosen);
+    return chosen[kLeftHand].on_surface;
+  };
+  EXPECT_FALSE(shown(HandSight::kAbsent));
+  EXPECT_TRUE(shown(HandSight::kSeen));
+}
+
+TEST(BodyChoose, AHandBehindTheTrunkLiesOnTheBack) {
+  // The back is 0.24 widths behind the plane of shoulders and hips, a wrist's centre 3 cm more: 0.1128 m.
+  Standing s(standing());
+  s.scene.hands[0] = HandSight::kAbsent;
+  const auto off = [&](Vec3 p) { return s.scene.off_back_m(kLeftWrist, p); };
+  ASSERT_TRUE(off({0.05, -0.2, 2.2}));
+  EXPECT_NEAR(*off({0.05, -0.2, 2.2}), 0.0872, 1e-9);
+  EXPECT_NEAR(*off({0.05, -0.2, 2.05}), -0.0628, 1e-9);
+  EXPECT_FALSE(off({0.05, -0.2, 1.9}));                             // before the trunk
+  EXPECT_FALSE(off({0.3, -0.2, 2.2}));                              // beside it
+  EXPECT_FALSE(s.scene.off_back_m(kLeftElbow, {0.05, -0.2, 2.2}));  // elbows stand off
+  s.scene.hands[0] = HandSight::kSeen;
+  EXPECT_FALSE(off({0.05, -0.2, 2.2}));
+  s.scene.hands[0] = HandSight::kAbsent;
+  s.scene.trunk.front = {0, 0, 1};  // who shows the back
+  EXPECT_FALSE(off({0.05, -0.2, 2.2}));
+}
+
 TEST(BodyChoose, InProfileTheFarShoulderIsInferredBehindTheNearOne) {
   // Turned by 90 degrees: the left side is near, and both shoulders are marked on it.
   Places places = standing();

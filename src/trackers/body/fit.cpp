@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "trackers/body/candidates.h"
+
 namespace duo::body {
 namespace {
 
@@ -54,7 +56,9 @@ class Terms {
       add_point(id);
       add_depth(id);
       add_expected(id);
-      if (!chosen_[id].on_surface) add_guess(id);
+      if (chosen_[id].on_surface) continue;
+      add_guess(id);
+      add_back(id);
     }
     for (const FitBone& bone : kFitBones) add_bone(bone);
     add_trunk();
@@ -119,6 +123,12 @@ class Terms {
     add(s * off.x, {{at(id), {s, 0, 0}}});
     add(s * off.y, {{at(id), {0, s, 0}}});
     add(s * off.z, {{at(id), {0, 0, s}}});
+  }
+
+  /// A hand behind the back lies on it.
+  void add_back(JointId id) {
+    const auto off = scene_.off_back_m(id, now_[id]);
+    if (off) add(*off / kBackSigma_m, {{at(id), (-1 / kBackSigma_m) * scene_.trunk.front}});
   }
 
   void add_length(JointId a, JointId b, double length, double sigma, double weight = 1) {

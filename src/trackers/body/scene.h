@@ -1,6 +1,7 @@
 // All that a frame and the frames before say of one person, before joints are chosen.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "trackers/body/lengths.h"
@@ -35,6 +36,10 @@ struct Scene {
   double trunk_z_m = 0;
 
   double width_m() const { return (*lengths)[Bone::kShoulders]; }
+  HandSight sight_of(JointId hand_or_wrist) const { return hands[is_left(hand_or_wrist) ? 0 : 1]; }
+  /// How far a wrist or hand is behind where it would lie on the back, m. None where it is not behind the trunk, where its
+  /// network sees it, or where the trunk does not face the cameras.
+  std::optional<double> off_back_m(JointId id, Vec3 p) const;
 };
 
 /// From the skin to the joint along the view. `away`: how far the joint's side of the trunk looks away from the camera, -1
