@@ -107,7 +107,12 @@ void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hand
   scene.nearer = nearer;
 
   predict(scene, frame.ticks());
-  detect(frame, seen, hands, scene);
+  constexpr int kMostExchanged = 8;  // then the network is right
+  exchanged_ = are_sides_exchanged(corners_of(seen), expected_corners(scene)) ? exchanged_ + 1 : 0;
+  if (exchanged_ > 0 && exchanged_ <= kMostExchanged)
+    detect(frame, with_sides_exchanged(seen), {{hands.seen[1], hands.seen[0]}}, scene);
+  else
+    detect(frame, seen, hands, scene);
   lift(scene);
   choose(scene, chosen);
   sample_limbs(scene, chosen, samples_);

@@ -90,6 +90,7 @@ class Body {
   double seen_share_ = 0;
   double missed_ = 0;  // ticks
   int age_ = 0, flat_frames_ = 0;
+  int exchanged_ = 0;  // frames in a row in which the network took left for right
 };
 
 }  // namespace duo::body

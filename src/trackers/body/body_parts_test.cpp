@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "trackers/body/fit.h"
+#include "trackers/body/seen_trunk.h"
 #include "trackers/body/standing.h"
 
 namespace duo::body {
@@ -120,6 +122,40 @@ TEST(BodyPoints, JointsLieBesideTheMarks) {
   EXPECT_NEAR(points[kLeftHip].at_px.y, 110 - 3.4, 0.01);
   EXPECT_NEAR(points[kLeftShoulder].sigma_px, 1.5, 1e-9);
   EXPECT_TRUE(points[kLeftShoulder].inside);
+}
+
+TEST(BodyTrunk, SidesAreExchangedWhereTheOtherSidesAreExpected) {
+  const SeenBody body = upright({100, 100}, 100), exchanged = with_sides_exchanged(body);
+  EXPECT_EQ(exchanged.at(BodyPoint::kLeftHip).x_px(), body.at(BodyPoint::kRightHip).x_px());
+  EXPECT_EQ(exchanged.at(BodyPoint::kRightShoulder).world_m().x, body.at(BodyPoint::kLeftShoulder).world_m().x);
+  const TrunkCorners expected = corners_of(body);
+  EXPECT_FALSE(are_sides_exchanged(corners_of(body), expected));
+  EXPECT_TRUE(are_sides_exchanged(corners_of(exchanged), expected));
+  // From the side the shoulders are 8 px apart beside a trunk of 50: the network may turn the person as it likes.
+  TrunkCorners aside = expected;
+  aside[0].x = 104;
+  aside[1].x = 96;
+  EXPECT_FALSE(are_sides_exchanged(corners_of(exchanged), aside));
+  // Half a trunk away nothing is nearer to one side than to the other.
+  TrunkCorners away = corners_of(exchanged);
+  for (Vec2& corner : away) corner.x += 25;
+  EXPECT_FALSE(are_sides_exchanged(away, expected));
+}
+
+TEST(BodyTrunk, EveryPointButTheNoseHasAnotherSide) {
+  SeenBody body;
+  for (std::size_t i = 0; i < kBodyPoints; ++i) body.points[i].x_q8 = static_cast<std::int32_t>(i);
+  const SeenBody exchanged = with_sides_exchanged(body);
+  EXPECT_EQ(exchanged.at(BodyPoint::kNose).x_q8, 0);
+  for (std::size_t i = 1; i < kBodyPoints; ++i) {
+    const std::string name(name_of(static_cast<BodyPoint>(i)));
+    const std::string other(name_of(static_cast<BodyPoint>(exchanged.points[i].x_q8)));
+    const auto left = name.find("left"), right = name.find("right");
+    ASSERT_NE(left == std::string::npos, right == std::string::npos) << name;
+    const std::string opposite =
+        left != std::string::npos ? std::string(name).replace(left, 4, "right") : std::string(name).replace(right, 5, "left");
+    EXPECT_EQ(other, opposite);
+  }
 }
 
 TEST(BodyPoints, AHandsNetworkMovesHandAndWristAndTheShiftStays) {

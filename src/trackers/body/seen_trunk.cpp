@@ -1,5 +1,9 @@
 #include "trackers/body/seen_trunk.h"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 namespace duo::body {
 namespace {
 
@@ -20,6 +24,43 @@ TrunkCorners corners_of(const SeenBody& seen) {
 }
 
 Vec2 centre_of(const TrunkCorners& corners) { return mean(mean(corners[0], corners[1]), mean(corners[2], corners[3])); }
+
+TrunkCorners expected_corners(const Scene& scene) {
+  using enum JointId;
+  const auto at = [&](JointId id) {
+    const Vec3 p = scene.expected[id].p;
+    return scene.depth.geometry->project({p.x, p.y, std::max(p.z, kAnyDepth.near_m)});
+  };
+  return {at(kLeftShoulder), at(kRightShoulder), at(kLeftHip), at(kRightHip)};
+}
+
+bool are_sides_exchanged(const TrunkCorners& seen, const TrunkCorners& expected) {
+  constexpr double kFromSide = 0.35, kMuchNearer = 0.4;  // shares: of the trunk's length, of the distance
+  const auto length = [](Vec2 a, Vec2 b) { return std::sqrt(square(a.x - b.x) + square(a.y - b.y)); };
+  const double trunk = length(mean(expected[0], expected[1]), mean(expected[2], expected[3]));
+  if (length(expected[0], expected[1]) < kFromSide * trunk) return false;
+  double same = 0, other = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    same += length(seen[i], expected[i]);
+    other += length(seen[i], expected[i ^ 1]);
+  }
+  return other < kMuchNearer * same;
+}
+
+SeenBody with_sides_exchanged(const SeenBody& seen) {
+  using enum BodyPoint;
+  constexpr auto kOfFace = std::to_array<std::pair<BodyPoint, BodyPoint>>({{kLeftEyeInner, kRightEyeInner},
+                                                                           {kLeftEye, kRightEye},
+                                                                           {kLeftEyeOuter, kRightEyeOuter},
+                                                                           {kLeftEar, kRightEar},
+                                                                           {kMouthLeft, kMouthRight}});
+  SeenBody out = seen;
+  const auto exchange = [&](std::size_t left, std::size_t right) { std::swap(out.points[left], out.points[right]); };
+  for (const auto& [left, right] : kOfFace) exchange(static_cast<std::size_t>(left), static_cast<std::size_t>(right));
+  // Below the face, right follows left.
+  for (auto i = static_cast<std::size_t>(kLeftShoulder); i + 1 < kBodyPoints; i += 2) exchange(i, i + 1);
+  return out;
+}
 
 TrunkColor color_of(const FrameView& frame, const TrunkCorners& corners) {
   constexpr int kSide = 12;

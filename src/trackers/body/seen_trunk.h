@@ -4,7 +4,7 @@
 #include <array>
 
 #include "trackers/body/frame_view.h"
-#include "trackers/body/joints.h"
+#include "trackers/body/scene.h"
 
 namespace duo::body {
 
@@ -14,6 +14,15 @@ namespace duo::body {
 using TrunkCorners = std::array<Vec2, 4>;
 TrunkCorners corners_of(const SeenBody& seen);
 Vec2 centre_of(const TrunkCorners& corners);
+
+/// Where a scene expects them.
+TrunkCorners expected_corners(const Scene& scene);
+
+/// Whether the network took left for right: the corners are much nearer to where the other side's are expected. Never where
+/// the trunk is expected nearly from the side, where both sides lie together.
+bool are_sides_exchanged(const TrunkCorners& seen, const TrunkCorners& expected);
+/// Left for right, in the picture and in space.
+SeenBody with_sides_exchanged(const SeenBody& seen);
 
 /// Mean colour: shares of red and green, and how bright.
 struct TrunkColor {
