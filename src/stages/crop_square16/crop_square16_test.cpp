@@ -48,21 +48,28 @@ TEST(CropSquare16, BetweenPixelsAndOutside) {
   EXPECT_EQ(crop({-1000, 0, 256, 0}, Outside::kBlack, 0, 1)[2], 0);
 }
 
-TEST(CropSquare16, ThreadsAgree) {
-  Image<Rgb8> picture({67, 41});
+TEST(CropSquare16, EnginesAgree) {
   std::mt19937 rng(3);
-  for (int y = 0; y < 41; ++y)
-    for (int x = 0; x < 67; ++x)
-      picture.at(y, x) = {static_cast<std::uint8_t>(rng()), static_cast<std::uint8_t>(rng()), static_cast<std::uint8_t>(rng())};
   Pool two(2);
-  for (const int side : {1, 7, 32})
-    for (const TurnedSquare region : {TurnedSquare{33 * 256, 20 * 256, 9000, -3000}, TurnedSquare{-500, 9000, -4000, 2511}})
-      for (const Outside outside : {Outside::kEdge, Outside::kBlack}) {
-        std::vector<std::int16_t> want(side * side * 3), got(side * side * 3);
-        ref::crop_square16(picture.view(), region, outside, -7, {want.data(), {side, side}, 3});
-        simd::crop_square16(two, picture.view(), region, outside, -7, {got.data(), {side, side}, 3});
-        EXPECT_EQ(want, got);
-      }
+  for (const Size size : {Size{67, 41}, Size{1, 1}, Size{2, 1}, Size{1, 2}, Size{5, 3}}) {
+    test::Tight<Rgb8> picture(size);
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x)
+        picture.view.at(y, x) = {static_cast<std::uint8_t>(rng()), static_cast<std::uint8_t>(rng()),
+                                 static_cast<std::uint8_t>(rng())};
+    for (const int side : {1, 7, 32})
+      for (const TurnedSquare region : {TurnedSquare{33 * 256, 20 * 256, 9000, -3000}, TurnedSquare{-500, 9000, -4000, 2511},
+                                        TurnedSquare{200, 100, 300, 0}})
+        for (const Outside outside : {Outside::kEdge, Outside::kBlack}) {
+          std::vector<std::int16_t> want(side * side * 3);
+          ref::crop_square16(picture.view, region, outside, -7, {want.data(), {side, side}, 3});
+          test::each_target([&](const std::string& target) {
+            std::vector<std::int16_t> got(side * side * 3);
+            simd::crop_square16(two, picture.view, region, outside, -7, {got.data(), {side, side}, 3});
+            EXPECT_EQ(want, got) << target << " " << size.width << "x" << size.height << " side " << side;
+          });
+        }
+  }
 }
 
 }  // namespace
