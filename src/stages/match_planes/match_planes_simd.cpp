@@ -101,7 +101,7 @@ void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uin
   const int w = gray.width(), h = gray.height(), pad = out.pad;
   const auto first = [&](int more) { return std::min(rows_wanted + more, h); };
   const auto row = [&](View<std::uint8_t> plane, int y) { return plane.row(std::clamp(y, 0, h - 1)) + pad; };
-  pool.rows(first(3), [&](int begin, int end) {
+  const auto copy = [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
       std::copy_n(gray.row(y), w, row(out.value[0], y));
       out.continue_row(out.value[0], y);
@@ -111,8 +111,8 @@ void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uin
         outside_row(inside, y, row(out.low[0], y), row(out.outside, y));  // low[0] has nothing in it yet
       out.continue_row(out.outside, y);
     }
-  });
-  pool.rows(first(1), [&](int begin, int end) {
+  };
+  const auto compare = [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
       const std::uint8_t* rows[5];
       for (int i = 0; i < 5; ++i) rows[i] = row(out.value[0], y + i - 2);
@@ -121,8 +121,8 @@ void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uin
       for (const View<std::uint8_t> plane : {out.census[0], out.census[1], out.value[1], out.value[2]})
         out.continue_row(plane, y);
     }
-  });
-  pool.rows(first(0), [&](int begin, int end) {
+  };
+  const auto span = [&](int begin, int end) {
     for (int y = begin; y < end; ++y)
       for (std::size_t c = 0; c < MatchPlanes::kChannels; ++c) {
         HWY_DYNAMIC_DISPATCH(interval_row)
@@ -131,7 +131,25 @@ void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uin
         out.continue_row(out.low[c], y);
         out.continue_row(out.high[c], y);
       }
-  });
+  };
+  if (pool.threads() > 1) {
+    pool.rows(first(3), copy);
+    pool.rows(first(1), compare);
+    pool.rows(first(0), span);
+    return;
+  }
+  // Each step reads what the step before has just written, while it is in the cache.
+  constexpr int kBand = 8;
+  for (int y = 0, copied = 0, compared = 0; y < first(0); y += kBand) {
+    const int end = std::min(y + kBand, first(0));
+    const auto go_on = [](const auto& step, int& done, int to) {
+      step(done, to);
+      done = to;
+    };
+    go_on(copy, copied, std::min(end + 3, first(3)));
+    go_on(compare, compared, std::min(end + 1, first(1)));
+    span(y, end);
+  }
 }
 
 }  // namespace simd
