@@ -4,6 +4,7 @@
 
 #include "engines/focused.h"
 #include "tests/agree.h"
+#include "tests/allocations.h"
 #include "tests/engine_setups.h"
 
 namespace duo {
@@ -29,12 +30,12 @@ TEST(Focus, PartsHaveFewSizes) {
   EXPECT_EQ(part.disparities, 64);
   // What more is searched lies behind: 100 - 64.
   EXPECT_EQ(focus_part({{100, 50, 300, 130}, 70, 100}, {640, 480}, 192).first_disparity, 36);
-  // What would reach over the picture and beyond the disparities moves back.
+  // What would reach over the picture and beyond the disparities moves back; the right part is inside the picture, too.
   part = focus_part({{-20, 400, 100, 300}, 170, 400}, {640, 480}, 192);
   EXPECT_EQ(part.kept, (Window{0, 400, 80, 80}));
   EXPECT_EQ(part.matched, (Window{0, 360, 80, 120}));
-  EXPECT_EQ(part.first_disparity, 128);
-  EXPECT_EQ(part.disparities, 64);
+  EXPECT_EQ(part.first_disparity, 0);
+  EXPECT_EQ(part.disparities, 192);
   // All there is.
   part = focus_part({{0, 0, 640, 480}, 0, 150}, {640, 480}, 150);
   EXPECT_EQ(part.matched, (Window{0, 0, 640, 480}));
@@ -124,18 +125,41 @@ TEST(Focus, EndsWithPrepare) {
   }
 }
 
-// More sizes than an engine keeps, one after the other and back.
-TEST(Focus, ComesBackToSizesThatItHadForgotten) {
+// Nothing is left of the parts before: of larger ones, of more disparities; nor where there are more sizes than are kept.
+TEST(Focus, SizesComeBack) {
   const SyntheticPair scene = room();
-  duo::Setup setup = raw_setup(scene, kChoices[0]);
-  const auto engine = prepared("simd", 2, setup);
-  const auto at = [&](int i) {
-    engine->focus({{0, 0, 20 + i % 8 * 20, 24 + i / 8 * 24}, 0, setup.max_disparity});
-    return run(*engine, scene.pair)->disparity.d_q4.clone();
-  };
-  const auto first = at(0);
-  for (int i = 1; i < 20; ++i) at(i);
-  test::expect_same<std::uint16_t>(first, at(0), "again");
+  for (const auto& choice : kChoices) {
+    duo::Setup setup = raw_setup(scene, choice);
+    setup.fill = false;
+    setup.max_disparity = 80;
+    const auto engine = prepared("simd", 2, setup);
+    const auto at = [&](Engine& by, int i) {
+      by.focus({{i, i / 2, 20 + i % 8 * 16, 24 + i / 8 * 24}, 0, i % 3 == 0 ? 80 : 40});
+      return run(by, scene.pair)->disparity.d_q4.clone();
+    };
+    for (int i = 19; i > 0; --i) at(*engine, i);
+    for (const int i : {18, 1, 11, 6}) {
+      const auto alone = prepared("simd", 1, setup);
+      test::expect_same<std::uint16_t>(at(*alone, i), at(*engine, i), std::string(choice.matcher) + " " + std::to_string(i));
+    }
+  }
+}
+
+// Of the default matcher, that is: pyramid has memory for each size.
+TEST(Focus, AllocatesNothing) {
+  const SyntheticPair scene = room();
+  for (const bool many_at_once : {false, true}) {
+    duo::Setup setup = raw_setup(scene, kChoices[0]);
+    setup.many_at_once = many_at_once;
+    const auto engine = prepared("simd", 2, setup);
+    for (int i = 0; i < 3; ++i) run(*engine, scene.pair);
+    const long before = test::allocations;
+    for (int i = 0; i < 6; ++i) {
+      engine->focus({{i, i / 2, 20 + 20 * i, 90 - 12 * i}, 0, setup.max_disparity});
+      run(*engine, scene.pair);
+    }
+    EXPECT_EQ(test::allocations - before, 0) << many_at_once;
+  }
 }
 
 }  // namespace

@@ -8,12 +8,14 @@
 #include "duoptic/engine.h"
 #include "duoptic/frame.h"
 #include "engines/prepared.h"
+#include "matchers/match.h"
 #include "stages/types/gray_pair.h"
 
 namespace duo {
 
-/// What is matched for a focus. Sizes have few values, so that memory that was made for one serves again: eighths of the
-/// picture's width, quarters of its height, and whole vectors of disparities.
+/// What is matched for a focus, as a pair of its own: its right picture lies `first_disparity` px to the left of the left one.
+/// Sizes have few values, so that memory that was made for one serves again: eighths of the picture's width, quarters of its
+/// height, and whole vectors of disparities.
 ///
 /// Units  px of the left rectified picture
 struct FocusPart {
@@ -25,70 +27,68 @@ struct FocusPart {
 /// `focus` not empty inside the picture.
 FocusPart focus_part(const Focus& focus, Size size, int max_disparity);
 
-/// A part of a pair as a pair of its own: disparity 0 is the part's first one.
-struct FocusMaps {
-  FocusMaps(Size size, bool confidence);
-  Image<std::uint8_t> left, right, left_inside, right_inside, confidence;
-  Image<std::uint16_t> d_q4;
+/// The part of a pair, whose disparity 0 is the part's first one; and where its matches go. Views.
+/// `balanced`: the pair's right picture, as it is compared.
+GrayPair part_of(const GrayPair& whole, View<const std::uint8_t> balanced, const FocusPart& part);
+Match part_of(Frame& frame, const FocusPart& part);
+/// What was matched becomes disparities of the whole pair where it is wanted, none elsewhere.
+void keep_part(const FocusPart& part, Frame& frame);
 
-  /// Columns left of the right picture are its first one, and not inside.
-  /// `balanced`: the frame's right picture, as it is compared.
-  void cut(const FocusPart& part, const Frame& frame, View<const std::uint8_t> balanced);
-  /// Disparity and confidence of the window that is kept, which becomes what was matched; none elsewhere.
-  void put(const FocusPart& part, Frame& frame) const;
-};
-
-/// Matchers that can measure a whole pair and then match a part of it.
+/// Matchers that can measure a whole pair and then match a part of it, in the same memory or in memory of that size.
 template <class M>
 concept MatchesParts = requires(M& matcher, const GrayPair& pair, const Match& match, StageTimer& timer) {
+  matcher.match_measured(pair, matcher.measure(pair, timer), 1, match, timer);
+};
+template <class M>
+concept MatchesItsSize = requires(M& matcher, const GrayPair& pair, const Match& match, StageTimer& timer) {
   matcher.match_measured(pair, matcher.measure(pair, timer), match, timer);
 };
 
-/// Matchers and maps for parts of several sizes, which stay while their sizes come again.
+/// What parts of pairs are matched in.
 template <class Matcher>
 class Focused {
  public:
-  /// `of_whole`: the matcher of whole pairs, which measures them. make(setup, matcher): a matcher for these. Allocates when a
-  /// part of a new size comes.
+  /// `of_whole`: the matcher of whole pairs, which measures them. make(setup, matcher): a matcher for these, where `of_whole`
+  /// is one of its own size alone: then a part of a new size allocates.
   template <class Make>
   void match(const Prepared& prepared, const Focus& focus, const GrayPair& whole, Matcher& of_whole, Make make,
              StageTimer& timer, Frame& frame) {
-    const FocusPart part = focus_part(focus, prepared.size, prepared.setup.max_disparity);
-    OfSize& at = find(prepared, part, make);
     const auto match_part = [&]<class M>(M& matcher) {
-      DUO_CHECK(MatchesParts<M>);  // as Engine::can_focus() says
-      if constexpr (MatchesParts<M>) {
+      DUO_CHECK(MatchesParts<M> || MatchesItsSize<M>);  // as Engine::can_focus() says
+      if constexpr (MatchesParts<M> || MatchesItsSize<M>) {
+        const FocusPart part = focus_part(focus, prepared.size, prepared.setup.max_disparity);
         const Measured measured = matcher.measure(whole, timer);
-        at.maps.cut(part, frame, measured.right);
+        const GrayPair pair = part_of(whole, measured.right, part);
+        if constexpr (MatchesParts<M>)
+          matcher.match_measured(pair, measured, part.disparities, part_of(frame, part), timer);
+        else
+          std::get<M>(of_size(part, whole.masked(), make)).match_measured(pair, measured, part_of(frame, part), timer);
+        keep_part(part, frame);
         timer.stage("cut");
-        const GrayPair pair{at.maps.left, at.maps.right, at.maps.left_inside, at.maps.right_inside};
-        std::get<M>(*at.matcher).match_measured(pair, measured, {at.maps.d_q4, at.maps.confidence}, timer);
       }
     };
     std::visit(match_part, *of_whole);
-    at.maps.put(part, frame);
-    timer.stage("cut");
   }
 
  private:
   static constexpr std::size_t kMostSizes = 12;
   struct OfSize {
-    OfSize(Size size, bool confidence) : maps(size, confidence) {}
+    Size size;
     int disparities = 0;
-    FocusMaps maps;
     Matcher matcher;
   };
 
+  /// Matchers of sizes stay while these come again.
   template <class Make>
-  OfSize& find(const Prepared& prepared, const FocusPart& part, Make make) {
+  auto& of_size(const FocusPart& part, bool masked, Make make) {
     const Size size{part.matched.width, part.matched.height};
     for (OfSize& each : sizes_)
-      if (each.maps.left.size() == size && each.disparities == part.disparities) return each;
+      if (each.size == size && each.disparities == part.disparities) return *each.matcher;
     if (sizes_.size() == kMostSizes) sizes_.pop_front();
-    OfSize& out = sizes_.emplace_back(size, prepared.setup.wants.confidence);
-    out.disparities = part.disparities;
-    make(MatchSetup{size, part.disparities, true}, out.matcher);
-    return out;
+    OfSize& out = sizes_.emplace_back();
+    out.size = size, out.disparities = part.disparities;
+    make(MatchSetup{size, part.disparities, masked}, out.matcher);
+    return *out.matcher;
   }
 
   std::list<OfSize> sizes_;

@@ -16,7 +16,7 @@
 namespace duo {
 
 /// Makes a frame of a pair with a pool of threads and scratch memory of its own; allocates nothing once it is
-/// there, but for a focus of a new size.
+/// there, but for the first focus (see Focused).
 ///
 /// Threads  one caller at a time; the pool's work for it
 class SimdFrames {

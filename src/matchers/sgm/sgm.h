@@ -47,10 +47,11 @@ class Sgm {
   ///
   /// `clear`: how the pair is matched where that has been settled; else its stream settles it
   void match(const GrayPair& pair, const Match& out, StageTimer& timer, std::optional<bool> clear = {});
-  /// Its first step, and all others, of the pair or of a part of it: `pair.right` is cut from `measured.right`.
+  /// Its first step, and all others, of the pair or of a part of it, which may be smaller and is searched for [0,
+  /// max_disparity), at most as set up: `pair.right` is cut from `measured.right`.
   Measured measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear = {});
-  void match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer);
-  /// Of the last pair: what was compared, and whether as clear pictures.
+  void match_measured(const GrayPair& pair, const Measured& measured, int max_disparity, const Match& out, StageTimer& timer);
+  /// Of the last whole pair: what was compared, and whether as clear pictures.
   SemiGlobal compared() const { return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global()}; }
   bool clear() const { return clear_; }
 
@@ -73,7 +74,8 @@ class Sgm {
   /// The same in `rows`; none in all others. Saves most of what these would take.
   void match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows = {}, std::optional<bool> clear = {});
   Measured measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear = {});
-  void match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer, RowBand rows = {});
+  void match_measured(const GrayPair& pair, const Measured& measured, int max_disparity, const Match& out, StageTimer& timer,
+                      RowBand rows = {});
   SemiGlobal compared() const { return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global()}; }
   bool clear() const { return clear_; }
 

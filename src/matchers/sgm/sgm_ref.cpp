@@ -22,7 +22,7 @@ void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, std::
   const Measured measured = measure(pair, timer, clear);
   GrayPair balanced = pair;
   balanced.right = measured.right;
-  match_measured(balanced, measured, out, timer);
+  match_measured(balanced, measured, max_disparity_, out, timer);
 }
 
 Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear) {
@@ -35,33 +35,40 @@ Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<boo
   return {maps_.balanced, noise_q4, clear_};
 }
 
-void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer) {
+void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max_disparity, const Match& out,
+                         StageTimer& timer) {
   clear_ = measured.clear;
+  const auto of_size = [size = pair.size()](auto& image) { return image.view().crop(0, 0, size); };
+  const auto left_winner = of_size(maps_.left_winner), right_winner = of_size(maps_.right_winner);
+  const auto softened = of_size(maps_.softened);
+  const auto fine = of_size(maps_.fine);
+  left_.size = right_.size = pair.size();
   const int noise_q4 = params_.soften != 0 ? measured.noise_q4 : 0;
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
-    if (noise_q4 > 0) ref::bilateral(gray, bilateral_range(noise_q4), maps_.softened);
+    if (noise_q4 > 0) ref::bilateral(gray, bilateral_range(noise_q4), softened);
     timer.stage("bilateral");
-    ref::match_planes(noise_q4 > 0 ? maps_.softened.view() : gray, inside, census_dead_zone(noise_q4), clear_, out);
+    ref::match_planes(noise_q4 > 0 ? View<const std::uint8_t>(softened) : gray, inside, census_dead_zone(noise_q4), clear_,
+                      out);
     timer.stage("match_planes");
   };
   planes(pair.left, pair.left_inside, left_);
   planes(pair.right, pair.right_inside, right_);
-  const SemiGlobal in = compared();
-  ref::semi_global(in, {maps_.left_winner, maps_.right_winner, maps_.fine, out.confidence});
+  SemiGlobal in = compared();
+  in.max_disparity = max_disparity;
+  ref::semi_global(in, {left_winner, right_winner, fine, out.confidence});
   timer.stage("semi_global");
   // What follows the check writes to another image than it reads: the check stays in the one from which it ends in d_q4.
   const bool refine = params_.refine != 0 && !clear_;
-  const View<std::uint16_t> smoothed = refine ? maps_.fine.view() : out.d_q4, before = refine ? out.d_q4 : maps_.fine.view(),
+  const View<std::uint16_t> smoothed = refine ? fine : out.d_q4, before = refine ? out.d_q4 : fine,
                             checked = params_.smooth != 0 ? before : smoothed;
-  ref::check_left_right(
-      {maps_.left_winner, maps_.right_winner, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach},
-      maps_.fine, checked);
+  ref::check_left_right({left_winner, right_winner, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach},
+                        fine, checked);
   timer.stage("check_left_right");
   ref::remove_speckle(checked, params_.speckle_step_q4, params_.speckle);
   timer.stage("speckle");
   if (params_.smooth != 0) ref::weighted_median({checked, in.left.value[0]}, smoothed);
   timer.stage("weighted_median");
-  if (refine) ref::lucas_kanade({in.left.value[0], in.right.value[0], smoothed, max_disparity_}, out.d_q4);
+  if (refine) ref::lucas_kanade({in.left.value[0], in.right.value[0], smoothed, max_disparity}, out.d_q4);
   timer.stage("lucas_kanade");
   Image<std::uint16_t> columns(out.confidence.empty() ? Size{} : Size{out.d_q4.width(), 2});
   for (int y = 0; y < out.confidence.height(); ++y) keep_confidence(out.d_q4, y, columns, out.confidence);

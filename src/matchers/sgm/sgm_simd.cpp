@@ -32,7 +32,7 @@ void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBa
   const Measured measured = measure(pair, timer, clear);
   GrayPair balanced = pair;
   balanced.right = measured.right;
-  match_measured(balanced, measured, out, timer, rows);
+  match_measured(balanced, measured, max_disparity_, out, timer, rows);
 }
 
 Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear) {
@@ -46,8 +46,14 @@ Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<boo
   return {maps_.balanced, noise_q4, clear_};
 }
 
-void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const Match& out, StageTimer& timer, RowBand rows) {
+void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max_disparity, const Match& out, StageTimer& timer,
+                         RowBand rows) {
   clear_ = measured.clear;
+  const auto of_size = [size = pair.size()](auto& image) { return image.view().crop(0, 0, size); };
+  const auto left_winner = of_size(maps_.left_winner), right_winner = of_size(maps_.right_winner);
+  const auto softened = of_size(maps_.softened);
+  const auto fine = of_size(maps_.fine);
+  left_.size = right_.size = pair.size();
   const int noise_q4 = params_.soften != 0 ? measured.noise_q4 : 0;
   // What the result depends on: disparities around a confidence; taps of the last step and of the median; islands, which are
   // smaller than `speckle` pixels where they matter; paths from above, and with paths from below the whole picture.
@@ -61,31 +67,31 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, const M
   const SemiGlobalParams semi_global = params_.semi_global();
   const int plane_rows = semi_global.upward ? h : joined.end;
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
-    if (noise_q4 > 0) simd::bilateral(pool_, gray, bilateral_range(noise_q4), maps_.softened);
+    if (noise_q4 > 0) simd::bilateral(pool_, gray, bilateral_range(noise_q4), softened);
     timer.stage("bilateral");
-    simd::match_planes(pool_, noise_q4 > 0 ? maps_.softened.view() : gray, inside, census_dead_zone(noise_q4), clear_,
-                       plane_rows, out);
+    simd::match_planes(pool_, noise_q4 > 0 ? View<const std::uint8_t>(softened) : gray, inside, census_dead_zone(noise_q4),
+                       clear_, plane_rows, out);
     timer.stage("match_planes");
   };
   planes(pair.left, pair.left_inside, left_);
   planes(pair.right, pair.right_inside, right_);
-  const SemiGlobal in{left_.planes(), right_.planes(), max_disparity_, semi_global, joined};
-  simd::semi_global(pool_, in, scratch_, {maps_.left_winner, maps_.right_winner, maps_.fine, out.confidence});
+  const SemiGlobal in{left_.planes(), right_.planes(), max_disparity, semi_global, joined};
+  simd::semi_global(pool_, in, scratch_, {left_winner, right_winner, fine, out.confidence});
   timer.stage("semi_global");
   // What follows the check writes to another image than it reads: the check stays in the one from which it ends in d_q4.
-  const View<std::uint16_t> smoothed = refine ? maps_.fine.view() : out.d_q4, before = refine ? out.d_q4 : maps_.fine.view(),
+  const View<std::uint16_t> smoothed = refine ? fine : out.d_q4, before = refine ? out.d_q4 : fine,
                             checked = params_.smooth != 0 ? before : smoothed;
   simd::check_left_right(pool_,
-                         {joined.of<const std::int16_t>(maps_.left_winner), joined.of<const std::int16_t>(maps_.right_winner),
+                         {joined.of<const std::int16_t>(left_winner), joined.of<const std::int16_t>(right_winner),
                           joined.of(pair.left_inside), joined.of(pair.right_inside), params_.tolerance, params_.reach},
-                         joined.of<const std::uint16_t>(maps_.fine), joined.of(checked));
+                         joined.of<const std::uint16_t>(fine), joined.of(checked));
   timer.stage("check_left_right");
   simd::remove_speckle(pool_, joined.of(checked), params_.speckle_step_q4, params_.speckle, speckle_scratch_);
   timer.stage("speckle");
   if (params_.smooth != 0) simd::weighted_median(pool_, {checked, in.left.value[0], smoothed_rows}, smooth_scratch_, smoothed);
   timer.stage("weighted_median");
   if (refine)
-    simd::lucas_kanade(pool_, {in.left.value[0], in.right.value[0], smoothed, max_disparity_, rows}, refine_scratch_, out.d_q4);
+    simd::lucas_kanade(pool_, {in.left.value[0], in.right.value[0], smoothed, max_disparity, rows}, refine_scratch_, out.d_q4);
   timer.stage("lucas_kanade");
   if (!out.confidence.empty())
     pool_.rows(wanted.count(), [&](int begin, int end, int part) {

@@ -57,6 +57,7 @@ void lucas_kanade(const LucasKanade& in, View<std::uint16_t> dst);
 
 namespace simd {
 struct LucasKanadeScratch {
+  /// For pictures of this size, and smaller ones.
   LucasKanadeScratch(Size size, int threads);
 
   static constexpr int kRows = LucasKanade::kRadius + 1, kBefore = 32;  // of taps in use; columns around a row

@@ -45,6 +45,10 @@ class Gradients {
   void rows(int begin, int end) {
     for (const int k : {kPull, kWeight})
       std::memset(t_.sums.row(k), 0, sizeof(std::int32_t) * static_cast<std::size_t>(t_.sums.width()));
+    // The last picture may have been wider; without taps, see tap_row(), all columns are of it.
+    const int last = w_ < 4 ? 0 : w_ - 1;
+    for (Image<std::int16_t>* taps : {&t_.pull, &t_.weight})
+      for (int k = 0; k < kRows; ++k) std::fill_n(taps->row(k) + kBefore + last, w_ - last + kBefore, std::int16_t{0});
     const int first = begin / 2 * 2;
     for (int y = std::max(first - kRadius, 0); y < std::min(first + kRadius, h_); y += 2) tap_row(y), add_row<1>(y);
     for (int pair = first; pair < end; pair += 2) {
@@ -207,6 +211,7 @@ void lucas_kanade(Pool& pool, const LucasKanade& in, LucasKanadeScratch& scratch
   const Size size = in.d_q4.size();
   DUO_CHECK(in.left.size() == size && in.right.size() == size && dst.size() == size && in.max_disparity >= 1);
   DUO_CHECK(static_cast<int>(scratch.threads.size()) >= pool.threads());
+  DUO_CHECK(scratch.threads[0].pull.width() >= size.width + 2 * LucasKanadeScratch::kBefore);
   const RowBand rows = in.rows.within(size.height);
   const auto run = HWY_DYNAMIC_DISPATCH(lucas_kanade_rows);
   pool.rows(rows.count(), [&](int begin, int end, int part) {

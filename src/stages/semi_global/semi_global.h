@@ -97,11 +97,14 @@ struct SemiGlobalPart {
 class SemiGlobalScratch {
  public:
   SemiGlobalScratch(Size size, int max_disparity, const SemiGlobalParams& params, int threads);
+  /// For pictures of this size and these disparities, at most those that it was made for.
+  void fit(Size size, int max_disparity);
   /// Columns by which the planes must continue to the left.
   static int padding(int max_disparity) { return (max_disparity + kGap - 1) / kGap * kGap; }
 
-  static constexpr int kBehind = 6;  // rows by which the backward pass over a half follows the forward pass; over a whole row it is one
-  static constexpr int kGap = 64;    // bytes of 255 between the path costs of two pixels: d = -1 and d = max_disparity
+  // Rows by which the backward pass over a half follows the forward pass; over a whole row it is one.
+  static constexpr int kBehind = 6;
+  static constexpr int kGap = 64;  // bytes of 255 between the path costs of two pixels: d = -1 and d = max_disparity
   struct Row {
     Image<std::uint8_t> sums, costs;   // [pixel][disparity]
     Image<std::uint8_t> along, back;   // [2][disparity]: path costs along the row and back, this pixel's and those before
@@ -109,8 +112,10 @@ class SemiGlobalScratch {
     Image<std::uint8_t> best, winner;  // of the right view, padding() columns before x = 0
     Image<std::uint8_t> beside;        // [2][pixel]: how much more than the winner's S its lower and its higher neighbour have
   };
-  int lanes = 0;   // disparities with those that only fill the last vector
-  int stride = 0;  // lanes + kGap
+  Size most;           // that it was made for
+  int most_lanes = 0;  // likewise
+  int lanes = 0;       // disparities with those that only fill the last vector
+  int stride = 0;      // lanes + kGap
   // [row of the ring]: a row for each direction, [pixel][disparity] and [pixel], with a pixel of zeros on both sides.
   std::vector<Image<std::uint8_t>> paths, minima;
   std::uint8_t* first_cell(std::uint8_t* row) const { return row + kGap + stride; }  // of x = 0

@@ -95,10 +95,25 @@ HWY_INLINE Before before(const Sweep& sweep, const std::uint8_t* costs, const st
   return Before(costs, least, &sweep.p2_more[std::abs(gray - gray_before)], sweep.in.params.p1);
 }
 
+/// What is known of the lanes when the program is made: nothing, or that they are so many whole vectors.
+constexpr int kAnyVectors = 0;
+template <int kVectors>
+HWY_INLINE int lanes_of(const Sweep& sweep) {
+  return kVectors != kAnyVectors ? kVectors * static_cast<int>(hn::Lanes(D())) : sweep.lanes;
+}
+template <int kVectors>
+HWY_INLINE int first_lane(const Sweep& sweep) {
+  return kVectors != kAnyVectors ? 0 : sweep.first;
+}
+
 /// Calls f(lane, whether some of the vector's lanes hold no disparity) for each vector.
-template <class F>
+template <int kVectors, class F>
 HWY_INLINE void each_vector(const Sweep& sweep, const F& f) {
   const int n = static_cast<int>(hn::Lanes(D()));
+  if constexpr (kVectors != kAnyVectors) {
+    for (int v = 0; v < kVectors; ++v) f(v * n, std::false_type());
+    return;
+  }
   int j = sweep.first;
   if (sweep.partly) f(j, std::true_type()), j += n;
   for (; j < sweep.lanes; j += n) f(j, std::false_type());
@@ -157,9 +172,10 @@ class Along {
     }
   }
 
+  template <int kVectors>
   HWY_INLINE void pixel(int x) {
     const D d;
-    const int first = sweep_.first, lanes = sweep_.lanes;
+    const int first = first_lane<kVectors>(sweep_), lanes = lanes_of<kVectors>(sweep_);
     const std::ptrdiff_t stride = sweep_.s.stride, cell = static_cast<std::ptrdiff_t>(x) * lanes;
     const std::uint8_t* gray = left_.value[0];
     // Where a path begins, beside the picture, the gray step does not matter: no step is dearer than none from zeros.
@@ -178,7 +194,7 @@ class Along {
       for (int j = first / kLine * kLine; j < lanes; j += kLine) hwy::Prefetch(kept + kFetchAhead * lanes + j);
     auto least_side = set(255);
     V least_above[3] = {least_side, least_side, least_side};
-    each_vector(sweep_, [&](int j, auto unused) HWY_ATTR {
+    each_vector<kVectors>(sweep_, [&](int j, auto unused) HWY_ATTR {
       constexpr bool kUnused = decltype(unused)::value;
       const auto cost = hn::Load(d, costs + j);
       auto sum = hn::Zero(d);

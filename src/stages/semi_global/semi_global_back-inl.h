@@ -42,9 +42,10 @@ class Back {
     if (kStep > 0) std::memset(row.winner.row(0) + part.begin, 0, seen);
   }
 
+  template <int kVectors>
   HWY_INLINE void pixel(int x) {
     const D d;
-    const int lanes = sweep_.lanes;
+    const int lanes = lanes_of<kVectors>(sweep_);
     const Before from_side = before(sweep_, before_, &least_, gray_[x], gray_[x - kStep]);
     const std::ptrdiff_t cell = static_cast<std::ptrdiff_t>(x) * lanes;
     const std::uint8_t *const sums = row_.sums.row(0) + cell, *const costs = row_.costs.row(0) + cell;
@@ -52,7 +53,7 @@ class Back {
     std::uint8_t *const best = row_.best.row(0) + x + 1, *const winner = row_.winner.row(0) + x + 1;
     std::uint8_t *const here = here_, *const totals = row_.totals.row(0) + kGap;
     auto least_side = set(255), least_total = least_side;
-    each_vector(sweep_, [&](int j, auto unused) HWY_ATTR {
+    each_vector<kVectors>(sweep_, [&](int j, auto unused) HWY_ATTR {
       const auto l = from_side.template step<decltype(unused)::value>(j, hn::Load(d, costs + j));
       hn::Store(l, d, here + j);
       least_side = hn::Min(least_side, l);
@@ -69,7 +70,7 @@ class Back {
     });
     const int pair = least(d, least_side, least_total);
     least_ = static_cast<std::uint8_t>(first_of(pair));
-    pick(x, totals, second_of(pair));
+    pick<kVectors>(x, totals, second_of(pair));
     std::swap(before_, here_);
   }
 
@@ -93,11 +94,12 @@ class Back {
 
  private:
   /// The left winner of a pixel: the last lane that holds the least.
+  template <int kVectors>
   HWY_INLINE void pick(int x, std::uint8_t* totals, int least_total) {
     const D d;
-    const int n = static_cast<int>(hn::Lanes(d)), lanes = sweep_.lanes;
+    const int n = static_cast<int>(hn::Lanes(d)), lanes = lanes_of<kVectors>(sweep_);
     int lane = 0;
-    for (int j = sweep_.first; j < lanes; j += n) {
+    for (int j = first_lane<kVectors>(sweep_); j < lanes; j += n) {
       std::uint64_t bits = 0;
       hn::StoreMaskBits(d, hn::Eq(hn::Load(d, totals + j), set(least_total)), reinterpret_cast<std::uint8_t*>(&bits));
       lane = bits != 0 ? j + 63 - std::countl_zero(bits) : lane;

@@ -47,7 +47,7 @@ int walk(const Sweep& sweep, int i, int end) {
       const int to = std::min(from + kBlock, part.width());
       if (i > 0) sweep.wait_for(i - 1, std::min(to + 1, part.width()));
       costs_of_block<kStep>(part, along, from, to);
-      for (int p = from; p < to; ++p) along.pixel(column<kStep>(part, p));
+      for (int p = from; p < to; ++p) along.template pixel<kAnyVectors>(column<kStep>(part, p));
       sweep.finished(i, to);
     }
   }
@@ -56,7 +56,7 @@ int walk(const Sweep& sweep, int i, int end) {
 
 /// And the rest, with winners. A thread walks along one row and back along an earlier one at the same time: each pixel of a
 /// path waits for the pixel before, and two such chains fill each other's waiting.
-template <bool kDiagonals, int kStep>
+template <bool kDiagonals, int kStep, int kVectors>
 void walk_and_pick(const Sweep& sweep, int i) {
   const Part& part = sweep.part;
   const int width = part.width(), behind = part.facing != nullptr ? Scratch::kBehind : 1;  // rows of this thread
@@ -73,8 +73,8 @@ void walk_and_pick(const Sweep& sweep, int i) {
       if (i > 0) sweep.wait_for(i - 1, std::min(end + 1, width));
       costs_of_block<kStep>(part, along, begin, end);
       for (int p = begin; p < end; ++p) {
-        along.pixel(column<kStep>(part, p));
-        if (both) back.pixel(column<kStep>(part, width - 1 - p));
+        along.template pixel<kVectors>(column<kStep>(part, p));
+        if (both) back.template pixel<kVectors>(column<kStep>(part, width - 1 - p));
       }
       if (end == width && part.facing != nullptr) along.meet(i);
       sweep.finished(i, end);
@@ -85,7 +85,7 @@ void walk_and_pick(const Sweep& sweep, int i) {
     const int back_i = i - (turn - left) * part.threads;
     sweep.wait_for_facing(back_i);
     Back<-kStep> back(sweep, sweep.y_of(back_i), row(left), true);
-    for (int p = width - 1; p >= 0; --p) back.pixel(column<kStep>(part, p));
+    for (int p = width - 1; p >= 0; --p) back.template pixel<kVectors>(column<kStep>(part, p));
     back.finish();
   }
 }
@@ -99,7 +99,12 @@ void run(const Sweep& sweep) {
     sweep.sums_are_there();
     sweep.wait_for_sums();
   }
-  walk_and_pick<kDiagonals, kStep>(sweep, i);
+  // The default's 128 disparities, without loops.
+  constexpr int kUsual = 128, kUsualVectors = kUsual / static_cast<int>(hn::MaxLanes(D()));
+  if (!kDiagonals && sweep.lanes == kUsual && sweep.first == 0 && !sweep.partly)
+    walk_and_pick<kDiagonals, kStep, kDiagonals ? kAnyVectors : kUsualVectors>(sweep, i);
+  else
+    walk_and_pick<kDiagonals, kStep, kAnyVectors>(sweep, i);
 }
 
 void sweep(const SemiGlobal& in, Scratch& scratch, const SemiGlobalMatch& out, const Part& part) {
@@ -188,7 +193,8 @@ SemiGlobalPart row_in_turn(SemiGlobalScratch& scratch, int thread, int threads, 
 
 void semi_global(Pool& pool, const SemiGlobal& in, SemiGlobalScratch& scratch, const SemiGlobalMatch& out) {
   const Size size = in.left.size();
-  DUO_CHECK(in.max_disparity >= 1 && in.max_disparity <= 256 && scratch.lanes == SemiGlobalScratch::padding(in.max_disparity));
+  DUO_CHECK(in.max_disparity >= 1 && in.max_disparity <= 256);
+  scratch.fit(size, in.max_disparity);
   DUO_CHECK(out.left.size() == size && out.right.size() == size && out.fine.size() == size);
   DUO_CHECK(static_cast<int>(scratch.rows.size()) >= scratch.rows_each * pool.threads());
   const int threads = std::min(pool.threads(), size.height);

@@ -22,7 +22,7 @@ void remove_speckle(View<std::uint16_t> d_q4, int step_q4, int smallest);
 }
 namespace simd {
 using SpeckleScratch = RunForestScratch;
-/// The scratch is made for pictures of this width that are at least as high.
+/// The scratch is made for pictures that are at least as large.
 void remove_speckle(Pool& pool, View<std::uint16_t> d_q4, int step_q4, int smallest, SpeckleScratch& scratch);
 }  // namespace simd
 

@@ -20,7 +20,7 @@ struct SmoothSurface {
 }  // namespace
 
 void remove_speckle(Pool& pool, View<std::uint16_t> d_q4, int step_q4, int smallest, SpeckleScratch& scratch) {
-  DUO_CHECK(scratch.runs.width() == d_q4.width() && scratch.runs.height() >= d_q4.height());
+  DUO_CHECK(scratch.runs.width() >= d_q4.width() && scratch.runs.height() >= d_q4.height());
   RunForest<SmoothSurface> islands(d_q4.size(), {d_q4, step_q4}, scratch);
   islands.build(pool);
   pool.rows(d_q4.height(), [&](int begin, int end) {

@@ -43,9 +43,10 @@ namespace simd {
 /// The inputs once more, with columns around them so that taps outside the picture can be read.
 class WeightedMedianScratch {
  public:
+  /// For pictures of this size, and smaller ones.
   explicit WeightedMedianScratch(Size size);
 
-  Size size;
+  Size most, size;             // of all pictures, of the last one
   Image<std::int16_t> values;  // d_q4 - 2^15: the order of unsigned values in signed lanes
   Image<std::int16_t> guide;   // with kNowhere added where there is no disparity
 };

@@ -32,6 +32,7 @@ void pad_row(const std::uint16_t* d_q4, const std::uint8_t* gray, int w, std::in
     values[x] = static_cast<std::int16_t>(d_q4[x] ^ 0x8000);
     guide[x] = static_cast<std::int16_t>(gray[x] | (d_q4[x] == Disparity::kNone ? kNowhere : 0));
   }
+  std::fill_n(guide + w, kPadRight, kNowhere);
 }
 
 /// The medians of one vector of pixels.
@@ -174,7 +175,7 @@ HWY_EXPORT(smooth_rows);
 
 namespace simd {
 
-WeightedMedianScratch::WeightedMedianScratch(Size size_in) : size(size_in) {
+WeightedMedianScratch::WeightedMedianScratch(Size size_in) : most(size_in), size(size_in) {
   const Size padded{kPadLeft + size.width + kPadRight, size.height};
   values = Image<std::int16_t>(padded);
   guide = Image<std::int16_t>(padded);
@@ -183,7 +184,8 @@ WeightedMedianScratch::WeightedMedianScratch(Size size_in) : size(size_in) {
 
 void weighted_median(Pool& pool, const WeightedMedian& in, WeightedMedianScratch& scratch, View<std::uint16_t> dst) {
   DUO_CHECK(in.d_q4.size() == dst.size() && in.guide.size() == dst.size());
-  DUO_CHECK(scratch.size == dst.size());
+  DUO_CHECK(dst.width() <= scratch.most.width && dst.height() <= scratch.most.height);
+  scratch.size = dst.size();
   const auto pad = HWY_DYNAMIC_DISPATCH(pad_row);
   const RowBand rows = in.rows.within(dst.height()), taps = in.rows.grown(kRadius, dst.height());
   pool.rows(taps.count(), [&](int begin, int end) {
