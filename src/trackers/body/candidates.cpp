@@ -104,7 +104,7 @@ bool is_of_another(const Scene& scene, JointId id, Vec3 skin) {
 std::optional<double> Scene::off_back_m(JointId id, Vec3 p) const {
   constexpr double kHalfWidths = 0.6, kAbove = 0.1, kBelow = 1.3;  // the back: of the trunk's width and length
   constexpr double kFacing = 0.7, kBehindPlane = 0.24, kArm_m = 0.03;
-  if (!is_hand_or_wrist(id) || sight_of(id) == HandSight::kSeen) return std::nullopt;
+  if (!is_hand_or_wrist(id) || sight_of(id) != HandSight::kAbsent) return std::nullopt;
   if (dot(trunk.front, normalized(trunk.shoulders)) > -kFacing) return std::nullopt;
   const Vec3 q = trunk.of(p);
   if (std::abs(q.x) > kHalfWidths * trunk.width_m || q.y < kAbove * trunk.length_m || q.y > kBelow * trunk.length_m || q.z > 0)
