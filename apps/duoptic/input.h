@@ -36,6 +36,7 @@ struct InputOptions {
                                                                        {"right-left", ViewLayout::kRightLeft},
                                                                        {"top-bottom", ViewLayout::kTopBottom},
                                                                        {"bottom-top", ViewLayout::kBottomTop}}))
+        ->transform(CLI::IsMember({"side-by-side", "right-left", "top-bottom", "bottom-top"}))  // looks before the one above
         ->type_name("side-by-side|right-left|top-bottom|bottom-top");
   }
   /// Cameras are asked for the size that the rig was made for.
@@ -51,13 +52,20 @@ struct InputOptions {
 
 /// Opens LEFT and perhaps RIGHT. `rig` wins over the source's own.
 ///
-/// Errors  those of open_pairs()
+/// Errors  those of open_pairs(); half of LEFT alone is half of what the rig was made for: RIGHT is missing
 inline Result<Input> open_input(const std::string& left, const std::string& right, const std::optional<Rig>& rig,
                                 const InputOptions& options = {}) {
   Input input{nullptr, rig, {left}};
   if (!right.empty()) input.names.push_back(right);
   DUO_TRY_ASSIGN(input.pairs, open_pairs(left, right, options.wish(rig)));
   if (!rig) input.rig = input.pairs->rig();
+  const Size half = input.pairs->size();
+  if (right.empty() && rig &&
+      (rig->left.size == Size{2 * half.width, half.height} || rig->left.size == Size{half.width, 2 * half.height}))
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("cannot use {} as two views: it has the {}x{} pixels that one view of the rig has; give "
+                             "LEFT and RIGHT, or the rig of its halves",
+                             left, rig->left.size.width, rig->left.size.height)};
   return input;
 }
 

@@ -54,7 +54,7 @@ enum class ViewLayout : std::uint8_t { kSideBySide, kRightLeft, kTopBottom, kBot
 
 /// What is asked of two cameras, and what is known of files that they do not say themselves.
 struct PairWish {
-  CameraWish cameras = {};
+  CameraWish cameras = {};                // its size is that of one view, also of a camera that gives both in one picture
   TimeNs skew_ns = 0;                     // of two videos: how much later than their times say the right pictures were taken
   std::optional<ViewLayout> layout = {};  // of one source; none: what it says itself, else side by side where both halves agree
 };

@@ -87,6 +87,10 @@ class Halves final : public FilePairs {
 
 }  // namespace
 
+Size size_of_both(Size view, std::optional<ViewLayout> layout) {
+  return layout && is_above(*layout) ? Size{view.width, 2 * view.height} : Size{2 * view.width, view.height};
+}
+
 Result<std::unique_ptr<PairSource>> halve(std::unique_ptr<Source> both, const std::string& name,
                                           std::optional<ViewLayout> layout) {
   const ViewLayout used = layout.value_or(ViewLayout::kSideBySide);

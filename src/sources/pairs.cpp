@@ -51,7 +51,9 @@ Result<std::unique_ptr<PairSource>> open_both(const std::filesystem::path& path,
     if (wish.layout) return no_layout(path, kApart);
     return open_live_clip(path.string());
   }
-  DUO_TRY_ASSIGN(auto source, open_source(path, wish.cameras));
+  CameraWish of_both = wish.cameras;  // a camera with both views gives them in one picture
+  of_both.size = size_of_both(of_both.size, wish.layout);
+  DUO_TRY_ASSIGN(auto source, open_source(path, of_both));
   const auto* file = dynamic_cast<const FileSource*>(source.get());
   DUO_TRY_ASSIGN(std::optional<RecordingHead> recording,
                  file != nullptr ? read_recording_head(path) : Result<std::optional<RecordingHead>>(std::nullopt));

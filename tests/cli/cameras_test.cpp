@@ -106,6 +106,12 @@ TEST_F(Cameras, WrongSizesAndNamesAreRefused) {
   const Ended large = run(kTrack + std::string("--rig large.json"));
   EXPECT_EQ(large.exit, 4);
   EXPECT_NE(large.err.find("has no 1280x720"), std::string::npos) << large.err;
+  // One camera with both views gives them in one picture.
+  for (const auto& [layout, size] : {std::pair("", "2560x720"), std::pair("--layout top-bottom", "1280x1440")}) {
+    const Ended both = run(std::string("depth camera:0 --rig large.json -o d ") + layout);
+    EXPECT_EQ(both.exit, 4);
+    EXPECT_NE(both.err.find(std::string("has no ") + size), std::string::npos) << both.err;
+  }
   const Ended none = run("track camera:0 camera:1 --select hand=1,1 --select elbow=2,2 --select shoulder=3,3 --rig rig.json");
   EXPECT_EQ(none.exit, 4);
   EXPECT_NE(none.err.find("/dev/video1: no such camera"), std::string::npos) << none.err;

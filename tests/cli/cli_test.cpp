@@ -175,6 +175,8 @@ TEST_F(Cli, BadPictures) {
   expect_failure("depth left.png v.avi -o out", kInput, "one is a picture, the other a video");
   expect_failure("depth start.avi v.avi -o out", kInput, "start.avi");
   expect_failure("depth . right.png -o out", kInput, "not a file");
+  expect_failure("depth left.png --rig rig.json -o out", kInput, "give LEFT and RIGHT");
+  expect_failure("depth left.png right.png --layout foo -o out", kUsage, "side-by-side,right-left,top-bottom,bottom-top");
 }
 
 TEST_F(Cli, NearSaysHowFarToSearch) {
