@@ -176,15 +176,15 @@ std::string why_swapped(const std::vector<SceneMatch>& matches) {
 /// The same where some of them do.
 std::string why_columns_differ(const std::vector<SceneMatch>& matches) {
   constexpr double kSome = 0.1, kBehind_px = -2;
-  constexpr double kLevelled = 0.5;  // of the spread of disparities, where one per column is taken off them
+  constexpr double kLevelled = 0.5,  // of the spread of disparities, where one per column is taken off them
+      kLeast = 0.1;                  // a wall at an angle has less from side to side
   const std::vector<double> d_px = disparities_px(matches);
   if (share_of(d_px, 0.5) > -1 && share_of(d_px, kSome) > kBehind_px) return {};
   const double stretch = plane_of(matches, disparity_px)[1];
-  if (spread(disparities_px(matches, stretch)) < kLevelled * spread(d_px))
+  if (std::abs(stretch) >= kLeast && spread(disparities_px(matches, stretch)) < kLevelled * spread(d_px))
     return fmt::format(
         "the right picture is {:.0f} % {} than the left one: points lie {:.0f} px further right in it to {:.0f} px further "
-        "left, "
-        "as if one was stretched; give both as their cameras made them",
+        "left, as if one was stretched; give both as their cameras made them",
         100 * std::abs(stretch), stretch > 0 ? "narrower" : "wider", -share_of(d_px, 0.05), share_of(d_px, 0.95));
   return fmt::format(
       "many points lie up to {:.0f} px further right in the right picture than in the left one, as no rectified pair has them: "
@@ -335,7 +335,8 @@ RigFit RigFitting::by_all(std::span<const std::shared_ptr<const Pair>> others) {
   if (!matcher_ || !last_) return untold(rig_);
   const SceneMatches scene = matcher_->matches();
   if (auto fit = by_matches(scene)) return *fit;
-  std::string why = why_apart(scene, *last_, threads_);
+  // Why they do not agree is told by more points than a quick search finds.
+  std::string why = why_apart(most_ == SceneSearch::kQuick ? match_pair(*last_, threads_) : scene, *last_, threads_);
   return why.empty() ? untold(rig_) : misfit(std::move(why));
 }
 

@@ -22,6 +22,11 @@ class Lines {
   bool is_black(int line) const { return bright(line, kBlack) == 0; }
   /// Whether there is a picture: not some pixels of a border that is not straight.
   bool shows_much(int line) const { return bright(line, kShows) * kShare > length(); }
+  bool is_dark() const {
+    for (int line = 0; line < count(); ++line)
+      if (shows_much(line)) return false;
+    return true;
+  }
 
  private:
   static constexpr int kBlack = 28, kShows = 40, kShare = 4;  // levels; video has black at 16, and codes it with errors
@@ -53,21 +58,24 @@ std::optional<Bars> bars_of(const Lines& lines) {
 
 }  // namespace
 
-std::string black_bars(const Pair& pair) {
+std::optional<std::string> black_bars(const Pair& pair) {
   constexpr int kApart = 2;  // lines
+  for (const Picture* picture : {&pair.left, &pair.right})
+    if (Lines(picture->pixels.view(), true).is_dark()) return {};
+  const auto even = [](int lines) { return (lines + 1) / 2 * 2; };  // as coded colours need it
   const auto [width, height] = pair.left.pixels.size();
   for (const bool of_rows : {true, false}) {
     const auto left = bars_of({pair.left.pixels.view(), of_rows}), right = bars_of({pair.right.pixels.view(), of_rows});
     if (!left || !right || std::abs(left->before - right->before) > kApart) continue;
-    const int before = std::max(left->before, right->before), both = before + std::max(left->after, right->after);
+    const int bar = std::max(left->before, right->before), before = even(bar),
+              both = before + even(std::max(left->after, right->after));
     return fmt::format(
-        "both pictures have black bars of {} px {}: depth is made up there, and a rig of pictures without bars does not fit; "
-        "cut "
-        "them off, as with ffmpeg -vf crop={}:{}:{}:{}",
-        before, of_rows ? "at the top and the bottom" : "at both sides", of_rows ? width : width - both,
+        "both pictures have black bars of {} px {}: depth is made up there; cut them off, and calibrate without them, as with "
+        "ffmpeg -vf crop={}:{}:{}:{}",
+        bar, of_rows ? "at the top and the bottom" : "at both sides", of_rows ? width : width - both,
         of_rows ? height - both : height, of_rows ? 0 : before, of_rows ? before : 0);
   }
-  return {};
+  return "";
 }
 
 }  // namespace duo

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace duo {
 namespace {
@@ -26,7 +27,8 @@ double correlation(std::span<const double> a, std::span<const double> b) {
 
 }  // namespace
 
-void OffsetWatch::see(TimeNs t_ns, const std::array<double, 2>& motion) {
+void OffsetWatch::see(TimeNs t_ns, const std::array<double, 2>& motion, double least) {
+  least_ = least;
   if (motion_[0].size() == kMostPairs) return;
   if (motion_[0].empty()) {
     first_ns_ = t_ns;
@@ -39,31 +41,40 @@ void OffsetWatch::see(TimeNs t_ns, const std::array<double, 2>& motion) {
 
 std::string OffsetWatch::warning() const {
   constexpr double kFits = 0.8, kClearly = 0.3, kFarthest_s = 3;
-  constexpr int kNear = 1;  // pictures: cameras in step are up to half a one apart
+  constexpr int kLeastShare = 3;       // an overlap of two thirds of the pairs at least
+  constexpr std::size_t kFewest = 15;  // pictures of either video in which much moves: a flash of light and single noisy pixels
+                                       // fit each other at any offset
+  constexpr int kNear = 1;             // pictures: cameras in step are up to half a one apart
   const std::span<const double> left = motion_[0], right = motion_[1];
   const auto pairs = static_cast<int>(left.size());
   if (left.size() < kFewestPairs || last_ns_ <= first_ns_) return {};
   const double frame_s = static_cast<double>(last_ns_ - first_ns_) * 1e-9 / (pairs - 1);
-  const int farthest = std::min(pairs / 2, static_cast<int>(kFarthest_s / frame_s));
+  for (const auto& side : {left, right})
+    if (static_cast<std::size_t>(std::ranges::count_if(side, [&](double root) { return root * root >= least_; })) < kFewest)
+      return {};
+  const int farthest = std::min(pairs / kLeastShare, static_cast<int>(kFarthest_s / frame_s));
   // The right video's picture i shows what the left one's picture i + later does.
   const auto fit = [&](int later) {
     const auto both = static_cast<std::size_t>(pairs - std::abs(later)), of_left = static_cast<std::size_t>(std::max(0, later)),
                of_right = static_cast<std::size_t>(std::max(0, -later));
     return correlation(left.subspan(of_left, both), right.subspan(of_right, both));
   };
-  double near = 0, best = 0;
-  int best_later = 0;
-  for (int later = -farthest; later <= farthest; ++later) {
-    const double here = fit(later);
-    if (std::abs(later) <= kNear) near = std::max(near, here);
-    if (here > best) best = here, best_later = later;
-  }
-  if (best < kFits || best - near < kClearly) return {};
-  const double later_ms = 1000 * best_later * frame_s;
+  std::vector<double> fits;
+  for (int later = -farthest; later <= farthest; ++later) fits.push_back(fit(later));
+  const auto best = std::ranges::max_element(fits);
+  if (*best < kFits) return {};
+  // One peak, beside which all falls: steps and waving fit again a period later, and which of the two it is cannot be told.
+  const auto is_close = [&](double other) { return other > *best - kClearly; };
+  auto first = best, last = best;
+  while (first != fits.begin() && is_close(*std::prev(first))) --first;
+  while (std::next(last) != fits.end() && is_close(*std::next(last))) ++last;
+  if (std::any_of(fits.begin(), first, is_close) || std::any_of(std::next(last), fits.end(), is_close)) return {};
+  const auto offset_of = [&](auto peak) { return static_cast<int>(peak - fits.begin()) - farthest; };
+  if (offset_of(first) <= kNear && offset_of(last) >= -kNear) return {};
+  const double later_ms = 1000 * offset_of(best) * frame_s;
   return fmt::format(
-      "the right video seems to have begun {:.0f} ms {} than the left one, and depth of what moves is wrong: what moves fits "
-      "with "
-      "--skew-ms {:.0f}, added to any that was given",
+      "the right video seems to have begun {:.0f} ms {} than the left one, and depth of what moves is wrong: add {:.0f} to "
+      "--skew-ms",
       std::abs(later_ms), later_ms > 0 ? "later" : "earlier", later_ms);
 }
 

@@ -16,13 +16,14 @@ namespace duo {
 /// Threads  one caller
 class OffsetWatch {
  public:
-  /// How much moves in the pictures of the next pair; of the first half minute.
-  void see(TimeNs t_ns, const std::array<double, 2>& motion);
+  /// How much moves in the pictures of the next pair, in any unit; below `least` it is not much. Of the first half minute.
+  void see(TimeNs t_ns, const std::array<double, 2>& motion, double least);
   /// Empty: they fit as they are, or it cannot be told.
   std::string warning() const;
 
  private:
   TimeNs first_ns_ = 0, last_ns_ = 0;
+  double least_ = 0;
   std::array<std::vector<double>, 2> motion_;
 };
 

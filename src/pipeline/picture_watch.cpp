@@ -1,13 +1,18 @@
 #include "pipeline/picture_watch.h"
 
+#include <bit>
+
 #include "pipeline/black_bars.h"
 
 namespace duo {
 
-void PictureWatch::see(const Pair& pair) {
-  if (!bars_) bars_ = black_bars(pair);
+void PictureWatch::see(const Pair& pair, bool live) {
   repeats_.see(pair);
-  offset_.see(pair.left.t_ns, repeats_.motion());
+  if (live) return;
+  offset_.see(pair.left.t_ns, repeats_.motion(), repeats_.least_motion());
+  // Pairs 1, 2, 4, 8 and so on: a title has bars, and what follows has none.
+  if (std::has_single_bit(++seen_) && bars_ != "")
+    if (auto bars = black_bars(pair)) bars_ = std::move(bars);
 }
 
 std::string PictureWatch::warning(bool live) const {

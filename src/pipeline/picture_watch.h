@@ -1,6 +1,7 @@
 // What is wrong with the pictures of a run, whatever their rig.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -15,14 +16,15 @@ namespace duo {
 /// Threads  one caller
 class PictureWatch {
  public:
-  void see(const Pair& pair);
+  void see(const Pair& pair, bool live);
   /// In one line; empty: nothing.
   std::string warning(bool live) const;
 
  private:
   RepeatWatch repeats_;
   OffsetWatch offset_;
-  std::optional<std::string> bars_;  // by the first pair
+  std::uint64_t seen_ = 0;
+  std::optional<std::string> bars_;  // of all pairs that were looked at; none: nothing but dark ones
 };
 
 }  // namespace duo

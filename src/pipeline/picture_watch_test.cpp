@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace duo {
@@ -30,7 +31,7 @@ PictureWatch after(int pairs, int later) {
     pair.left.pixels = room_at(i);
     pair.right.pixels = room_at(i + later);
     pair.left.t_ns = i * TimeNs{40'000'000};
-    watch.see(pair);
+    watch.see(pair, false);
   }
   return watch;
 }
@@ -44,6 +45,23 @@ TEST(PictureWatch, TellsAllThatIsWrongWithFiles) {
   EXPECT_EQ(bars.find("begun"), std::string::npos) << bars;
   EXPECT_EQ(after(100, 12).warning(true), "");
   EXPECT_EQ(PictureWatch().warning(false), "");
+}
+
+TEST(PictureWatch, BarsAreThoseOfAllPairsThatShowSomething) {
+  const auto pair_of = [](const Image<Rgb8>& picture) {
+    Pair pair;
+    pair.left.pixels = picture.clone();
+    pair.right.pixels = picture.clone();
+    return pair;
+  };
+  Image<Rgb8> gray(kRoomSize);
+  for (int y = 0; y < gray.height(); ++y) std::fill_n(gray.row(y), gray.width(), Rgb8{90, 90, 90});
+  const Pair dark = pair_of(Image<Rgb8>(kRoomSize)), barred = pair_of(room_at(0)), whole = pair_of(gray);
+  PictureWatch fades_in, title;
+  for (const Pair* pair : {&dark, &barred, &barred, &barred}) fades_in.see(*pair, false);
+  EXPECT_NE(fades_in.warning(false).find("black bars"), std::string::npos);
+  for (const Pair* pair : {&barred, &whole, &whole, &barred}) title.see(*pair, false);
+  EXPECT_EQ(title.warning(false), "");
 }
 
 }  // namespace

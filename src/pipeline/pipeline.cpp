@@ -226,7 +226,7 @@ Result<Next> Pipeline::next() {
   DUO_TRY_ASSIGN(const Next next, s.frames->next(s.last));
   if (next == Next::kNew) {
     s.pair = s.last.pair;
-    s.pictures.see(*s.pair);
+    s.pictures.see(*s.pair, live());
   }
   DUO_TRY(s.look_at_rig(next));
   if (next != Next::kNew) return next;

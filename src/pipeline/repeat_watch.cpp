@@ -13,7 +13,8 @@ constexpr int kGrid_px = 8;
 constexpr const char* kSides[] = {"left", "right"};
 
 enum class Change : std::uint8_t { kNone, kLittle, kMotion };
-constexpr int kStep = 16;  // levels: above the noise of cameras and of coding
+constexpr int kStep = 16;            // levels: above the noise of cameras and of coding
+constexpr std::size_t kShare = 200;  // one of so many pixels: an arm, a head
 
 void take_grid(View<const Rgb8> picture, std::vector<std::uint8_t>& into) {
   into.clear();
@@ -22,7 +23,6 @@ void take_grid(View<const Rgb8> picture, std::vector<std::uint8_t>& into) {
 }
 
 Change change_of(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now) {
-  constexpr std::size_t kShare = 200;  // one of so many pixels: an arm, a head
   constexpr std::size_t kStill = 8 * kShare;
   constexpr std::size_t kQuiet = 4;  // a quarter of a level in the mean, by coding anew; cameras' noise is more
   if (before.size() != now.size()) return Change::kLittle;  // the first
@@ -73,9 +73,13 @@ void RepeatWatch::see(const Pair& pair) {
   }
 }
 
+double RepeatWatch::least_motion() const {
+  return kStep * static_cast<double>(sides_[0].before.size()) / static_cast<double>(kShare);
+}
+
 std::string RepeatWatch::warning(bool live) const {
   constexpr int kHangs = 10, kFewest = 5;  // pictures
-  constexpr double kShare = 0.1;           // of the pairs with motion
+  constexpr double kOften = 0.1;           // of the pairs with motion
   for (std::size_t i = 0; i < 2; ++i) {
     const Side& side = sides_[i];
     if (live && side.in_a_row >= kHangs)
@@ -83,7 +87,7 @@ std::string RepeatWatch::warning(bool live) const {
           "the {} camera's pictures stay the same while the {} one's move: it hangs, and depth of what moves is wrong, or it "
           "sees nothing of what moves",
           kSides[i], kSides[1 - i]);
-    if (!live && side.repeated >= std::max<double>(kFewest, kShare * moved_))
+    if (!live && side.repeated >= std::max<double>(kFewest, kOften * moved_))
       return fmt::format(
           "{} of the {} pictures are the same as the one before, up to {} in a row, while the {} ones move: its camera was "
           "slower or hung, and depth of what moves is wrong there, or it saw nothing of what moves",

@@ -20,6 +20,8 @@ class RepeatWatch {
   void see(const Pair& pair);
   /// How much moved in either picture since the pair before: how many levels the grid's pixels went by, without noise.
   const std::array<double, 2>& motion() const { return motion_; }
+  /// That of an arm or a head which moves, in such pictures.
+  double least_motion() const;
   /// Live: of a camera that hangs now. Of files: how many pictures were repeated, where they are many. Empty: nothing.
   std::string warning(bool live) const;
 

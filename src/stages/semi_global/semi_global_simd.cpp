@@ -101,7 +101,8 @@ void run(const Sweep& sweep) {
   }
   // The default's 128 disparities, without loops.
   constexpr int kUsual = 128, kUsualVectors = kUsual / static_cast<int>(hn::MaxLanes(D()));
-  if (!kDiagonals && sweep.lanes == kUsual && sweep.first == 0 && !sweep.partly)
+  const bool is_usual = sweep.lanes == kUsual && hn::Lanes(D()) == hn::MaxLanes(D());  // vectors of SVE can be shorter
+  if (!kDiagonals && is_usual && sweep.first == 0 && !sweep.partly)
     walk_and_pick<kDiagonals, kStep, kDiagonals ? kAnyVectors : kUsualVectors>(sweep, i);
   else
     walk_and_pick<kDiagonals, kStep, kAnyVectors>(sweep, i);
