@@ -201,7 +201,7 @@ void Body::lift(Scene& scene) const {
 void Body::update(const FrameView& frame, const Scene& scene, const Choices& chosen) {
   constexpr double kStepGain = 0.5, kFar_off_m = 0.12, kFar_off_px = 6, kTooFar_m = 0.15;
   constexpr int kSights = 2, kUnsureSights = 6;
-  constexpr double kMostOnBack = 5;  // ticks
+  constexpr double kMostOnBack = 12;  // ticks, by which three sigma reach over the whole back
   int inside = 0, seen = 0;
   ++age_;
   const double ticks = age_ == 1 ? 1 : frame.ticks();  // before the first frame nothing was hidden for long
@@ -222,12 +222,14 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     // After a gap one sight may be a mistake, and more of a hand or wrist at which the network of hands did not look; where it
     // looked and saw none, they are not believed again.
     const HandSight sight = is_hand_or_wrist(id) ? scene.hands[side] : HandSight::kSeen;
+    const bool on_back = scene.off_back_m(id, p).has_value();
     const int enough = sight == HandSight::kSeen ? kSights : kUnsureSights;
     const bool believed = state.sure || age_ == 1 || (sight != HandSight::kAbsent && state.shown >= enough);
-    state.sure = state.seen && !hidden_by_arm && believed && frame.shows(point.at_px) && frame.shows(at);
+    state.sure = state.seen && !hidden_by_arm && !on_back && believed && frame.shows(point.at_px) && frame.shows(at);
+    state.absent = sight == HandSight::kAbsent;
     state.hidden = state.seen ? 0 : state.hidden + ticks;
     state.astray = state.seen ? 0 : state.astray + ticks;
-    if (scene.off_back_m(id, p)) state.astray = std::min(state.astray, kMostOnBack);
+    if (on_back) state.astray = std::min(state.astray, kMostOnBack);
     const Vec3 off = p - scene.expected[id].p;
     // What the network guesses of a hidden limb tells nothing of its speed.
     if (was_hidden && state.seen)
@@ -341,7 +343,7 @@ void Body::publish(const FrameView& frame, Person& person) const {
   // Equations know nothing of what is wrong in the same way in all frames. Hips are marked higher or lower on one person than
   // on another.
   constexpr double kScale = 1.4, kHandScale = 1.15, kFloor_m = 0.006, kHipMark_m = 0.028, kLost_m = 0.45, kHandLost_m = 0.37,
-                   kHeld_m = 0.07;
+                   kHeld_m = 0.07, kAbsent_m = 0.08;
   const Places places = with_lengths(fitted_.places, lengths_);
   const auto fill = [&](JointId id, Vec3 p, const Covariance3& c, JointState state, Vec3 step) {
     Joint& joint = person.joints[index_of(id)];
@@ -359,7 +361,10 @@ void Body::publish(const FrameView& frame, Person& person) const {
     Covariance3 c = fitted_.covariance[id];
     if (!state.sure) {
       const bool held = is_root(id) && missed_ == 0;  // by the rest of the trunk
-      const double grown = square(std::min(0.035 + 0.25 * std::min(state.astray, 30.0) * kTick_s, held ? kHeld_m : 1));
+      // A surface is no proof of a hand where its network saw none.
+      const double least_m = state.absent ? kAbsent_m : 0.035;
+      const double grown =
+          square(std::clamp(0.035 + 0.25 * std::min(state.astray, 30.0) * kTick_s, least_m, held ? kHeld_m : 1));
       c.xx += grown;
       c.yy += grown;
       c.zz += grown;

@@ -60,9 +60,10 @@ class Body {
   struct State {
     Vec3 step;          // since the last frame, smoothed
     double hidden = 0;  // ticks since it was seen
-    double astray = 0;  // the same, but five at most while it lies on the back
+    double astray = 0;  // the same, but bounded while it lies on the back
     int shown = 0;      // frames since it was not
     bool seen = false, sure = false;
+    bool absent = false;  // its network saw no hand
   };
 
   explicit Body(double scale) : lengths_(scale) {}
