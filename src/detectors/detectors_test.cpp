@@ -52,6 +52,11 @@ TEST(Place, SquareAroundACircle) {
   EXPECT_FALSE(usable({0, 0, 3 * 256, 0}, {640, 480})) << "too small";
   EXPECT_FALSE(usable({0, 0, 2000 * 256, 0}, {640, 480})) << "too large";
   EXPECT_FALSE(usable({-700 * 256, 0, 100 * 256, 0}, {640, 480})) << "far away";
+  // 20000 px away and 16000 to its right side: 36000 px are more than 2^31 in 1/65536 px.
+  constexpr Size kHuge{15000, 15000};
+  EXPECT_TRUE(usable({20000 * 256, 0, 12000 * 256, 0}, kHuge));
+  EXPECT_FALSE(usable({20000 * 256, 0, 16000 * 256, 0}, kHuge)) << "beyond what crops reach";
+  EXPECT_FALSE(usable({0, 20000 * 256, 0, 16000 * 256}, kHuge)) << "beyond what crops reach";
 }
 
 /// Grids in which nobody is.

@@ -38,6 +38,11 @@ bool usable(const TurnedSquare& region, Size picture) {
   if (!near(region.x_q8, width) || !near(region.y_q8, height)) return false;
   const std::int64_t most = 2 * std::max(width, height);
   if (std::abs(std::int64_t{region.right_x_q8}) > most || std::abs(std::int64_t{region.right_y_q8}) > most) return false;
+  // The crop is cut out by numbers of 32 bits, in 1/65536 px.
+  const auto inside = [&](std::int64_t at) {
+    return std::abs(at) + std::abs(std::int64_t{region.right_x_q8}) + std::abs(std::int64_t{region.right_y_q8}) < 1 << 23;
+  };
+  if (!inside(region.x_q8) || !inside(region.y_q8)) return false;
   const std::int32_t half = half_side(region);
   return half >= 4 * 256 && half <= most;
 }

@@ -27,7 +27,8 @@ TurnedSquare region_around(PointQ8 center, PointQ8 top);
 /// Half the side of a region, in 1/256 px.
 std::int32_t half_side(const TurnedSquare& region);
 
-/// Whether a region is one to look at: at least 8 px wide, no more than four pictures, its centre near the picture.
+/// Whether a region is one to look at: at least 8 px wide, no more than four pictures, its centre near the picture, all of it
+/// within 32768 px of the picture's corner.
 bool usable(const TurnedSquare& region, Size picture);
 
 }  // namespace duo

@@ -18,9 +18,8 @@ enum class Outside : std::uint8_t { kEdge, kBlack };
 // fx and fy are the 7 bits of px and py below whole pixels; y = ((128 - fy) upper + fy lower + 64) >> 7 with
 // upper = (128 - fx) p[0][0] + fx p[0][1], and lower likewise of the row below.
 //
-// Shape    picture H x W below 16384 a side, y N x N of 3 channels, N <= 1024; the region within 2^22 / 256 px of the corner
-// and
-//          no larger
+// Shape    picture H x W below 16384 a side, y N x N of 3 channels, N <= 1024; no corner of the region beyond 32768 px from
+//          the picture's corner: |x_q8| and |y_q8| + |right_x_q8| + |right_y_q8| < 2^23
 // Units    offset: added to 0 .. 32640, such that the result fits 16 bits
 // Border   kEdge: the picture continues by its edge pixels; kBlack: by zeros
 // Threads  rows are independent
