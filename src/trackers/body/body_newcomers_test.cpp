@@ -99,6 +99,9 @@ TEST(BodyIdentity, WhoStandsIsUnlikeWhatLies) {
   EXPECT_LT(stands->unlike(frame, trunk_at({160, 120}, {0, 93})), 0.5);
   EXPECT_LT(stands->unlike(frame, trunk_at({160, 120}, {32, 88})), 1);  // bows by 20 degrees
   EXPECT_GT(stands->unlike(frame, trunk_at({160, 120}, {93, 0})), 2.2);
+  body::FrameView late = frame;
+  late.frame_s = 11.0 / 30;  // ten ticks more: a turn by 90 degrees counts 1 / (0.3 * (1 + 0.3 * 10)) = 0.83
+  EXPECT_NEAR(stands->unlike(late, trunk_at({160, 120}, {93, 0})), 0.83, 0.2);
 }
 
 // The trunk's left shoulder is 34 px, at 1.9 m 16 cm, to the right of its middle.

@@ -40,7 +40,8 @@ double Body::unlike(const FrameView& frame, const SeenBody& seen) const {
   if (color.known && color_.known)
     other = (square(color.red - color_.red) + square(color.green - color_.green)) / square(kColor) +
             square((color.bright - color_.bright) / kBright);
-  // Nobody lies down from one frame to the next.
+  // Nobody lies down from one tick to the next.
+  const double lies = 1 + 0.3 * std::min(missed_ + std::max(frame.ticks() - 1, 0.0), 10.0);
   TrunkCorners ahead;
   constexpr std::array kCorners = {JointId::kLeftShoulder, JointId::kRightShoulder, JointId::kLeftHip, JointId::kRightHip};
   for (std::size_t i = 0; i < ahead.size(); ++i) {
@@ -48,7 +49,7 @@ double Body::unlike(const FrameView& frame, const SeenBody& seen) const {
     ahead[i] = frame.depth.geometry->project({p.x, p.y, std::max(p.z, kAnyDepth.near_m)});
   }
   const double turned =
-      turned_away(ahead, corners, kLeastTrunk * lengths_[Bone::kTrunk] * frame.depth.px_per_m(z)) / (kTurned * aside);
+      turned_away(ahead, corners, kLeastTrunk * lengths_[Bone::kTrunk] * frame.depth.px_per_m(z)) / (kTurned * lies);
   return std::sqrt(square(off) + square(deep) + square(turned) + std::min(other, kMostOther) / 4);
 }
 
