@@ -23,6 +23,14 @@ bool is_end_on(const Places& places, const Limb& arm, const Lengths& lengths) {
   return places[arm[2]].z - places[arm[1]].z > kAway * lengths[Bone::kForearm];
 }
 
+/// What is left of 1 after some ticks of which each leaves a share: a fraction of a tick takes its part of that tick's loss. Of
+/// products alone, as std::pow() need not give the same bits on every processor.
+double left_after(double ticks, double share) {
+  double left = 1;
+  for (; ticks >= 1; --ticks) left *= share;
+  return left * (1 - ticks * (1 - share));
+}
+
 /// A hand that its network found far from where the body's network has it is another one.
 bool belongs(const SeenHand& hand, const Point& wrist, double px_per_m) {
   constexpr double kNear_hand_m = 0.12;
@@ -98,7 +106,8 @@ Window Body::expected_box(const FrameView& frame) const {
   return {whole(x0), whole(y0), whole(x1) - whole(x0) + 1, whole(y1) - whole(y0) + 1};
 }
 
-void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hands, std::span<const Places* const> nearer) {
+Body::Hands Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hands,
+                        std::span<const Places* const> nearer) {
   Scene scene;
   Choices chosen;
   scene.depth = frame.depth;
@@ -107,18 +116,17 @@ void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hand
   scene.nearer = nearer;
 
   predict(scene, frame.ticks());
-  constexpr int kMostExchanged = 8;  // then the network is right
-  exchanged_ = are_sides_exchanged(corners_of(seen), expected_corners(scene)) ? exchanged_ + 1 : 0;
-  if (exchanged_ > 0 && exchanged_ <= kMostExchanged)
-    detect(frame, with_sides_exchanged(seen), {{hands.seen[1], hands.seen[0]}}, scene);
-  else
-    detect(frame, seen, hands, scene);
+  if (missed_ > 0) sides_.forget();
+  const bool exchanged = sides_.are_exchanged(seen, expected_corners(scene), frame.ticks());
+  const Hands own = exchanged ? Hands{{hands.seen[1], hands.seen[0]}} : hands;
+  detect(frame, exchanged ? with_sides_exchanged(seen) : seen, own, scene);
   lift(scene);
   choose(scene, chosen);
   sample_limbs(scene, chosen, samples_);
   fit_.run(scene, chosen, samples_, fitted_);
   update(frame, scene, chosen);
   learn(scene);
+  return own;
 }
 
 void Body::predict(Scene& scene, double ticks) const {
@@ -155,7 +163,7 @@ void Body::detect(const FrameView& frame, const SeenBody& seen, const Hands& han
   const double most_m = kMostStep_m * (std::max(1.0, frame.ticks()) + missed_);
   if (found > 0) trunk_z_m_ += std::clamp(found - trunk_z_m_, -most_m, most_m);
   scene.trunk_z_m = trunk_z_m_;
-  if (!stands_out(frame.depth, corners_of(seen))) ++flat_frames_;
+  is_flat_ = !stands_out(frame.depth, corners_of(seen));
   region_ = seen.next;
   region_from_px_ = centre_of(corners_of(seen));
   color_.learn(color_of(frame, corners_of(seen)));
@@ -298,7 +306,7 @@ void Body::learn(const Scene& scene) {
 
 // Who walks behind somebody walks on.
 void Body::miss(const FrameView& frame, bool covered) {
-  const double keeps = std::pow(covered ? 0.97 : 0.8, frame.ticks());
+  const double keeps = left_after(frame.ticks(), covered ? 0.97 : 0.8);
   missed_ += frame.ticks();
   trunk_z_m_ += pace_.z;
   for (const JointId id : kFreeJoints) {

@@ -9,6 +9,7 @@
 #include "trackers/body/fit.h"
 #include "trackers/body/frame_view.h"
 #include "trackers/body/seen_trunk.h"
+#include "trackers/body/sides.h"
 
 namespace duo::body {
 
@@ -34,8 +35,10 @@ class Body {
   struct Hands {
     std::array<const SeenHand*, 2> seen = {};  // left, right; null: not asked
   };
-  /// `nearer`: people before this one, who were tracked in this frame.
-  void track(const FrameView& frame, const SeenBody& seen, const Hands& hands, std::span<const Places* const> nearer = {});
+  /// `nearer`: people before this one, who were tracked in this frame. Returns the hands by the person's own sides, which the
+  /// network of bodies may have exchanged.
+  [[nodiscard]] Hands track(const FrameView& frame, const SeenBody& seen, const Hands& hands,
+                            std::span<const Places* const> nearer = {});
   /// A frame in which nothing was seen of the person, perhaps because somebody covers it.
   void miss(const FrameView& frame, bool covered);
 
@@ -45,8 +48,8 @@ class Body {
   double missed() const { return missed_; }
   /// Of the joints that are marked in the picture, how many were seen when it was tracked last.
   double seen_share() const { return seen_share_; }
-  /// Frames in which the trunk did not stand out of what is beside it, as a picture on a wall does not.
-  int flat_frames() const { return flat_frames_; }
+  /// Whether the trunk did not stand out of what is beside it when it was tracked last, as a picture on a wall does not.
+  bool is_flat() const { return is_flat_; }
   /// Depth of the trunk's skin.
   double trunk_z_m() const { return trunk_z_m_; }
   /// Whether the last frame showed a hand to its network, where the body has it.
@@ -90,8 +93,9 @@ class Body {
   Vec3 pace_;  // of the trunk's middle from frame to frame, as it walks
   double seen_share_ = 0;
   double missed_ = 0;  // ticks
-  int age_ = 0, flat_frames_ = 0;
-  int exchanged_ = 0;  // frames in a row in which the network took left for right
+  int age_ = 0;
+  bool is_flat_ = false;
+  Sides sides_;
 };
 
 }  // namespace duo::body

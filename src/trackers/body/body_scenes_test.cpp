@@ -122,6 +122,39 @@ TEST(BodyScenes, OfWhomWalksInOnlyWhatIsInThePictureIsSeen) {
   EXPECT_GT(seen, 12);
 }
 
+// Somebody 60 cm nearer stands beside, so that the boxes around both overlap; nobody covers the other.
+TEST(BodyScenes, WhoComesLaterBesideSomebodyNearerIsSeenSoon) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  constexpr double kNearer = 1.45;
+  constexpr int kSteps = 30, kComes = 4, kAside_px = 42;
+  int frames = 0, seen_in = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    Frame frame = wall(), nearer = wall();
+    if (i >= kComes) draw_person(frame, i, [&](int x, int y) { return std::pair(x - kAside_px, y); });
+    draw_person(nearer, i, [&](int x, int y) { return std::pair(x + kAside_px, y); });
+    for (int y = 0; y < frame.color.height(); ++y)
+      for (int x = 0; x < frame.color.width(); ++x) {
+        const std::uint16_t q4 = nearer.disparity.d_q4.at(y, x);
+        if (q4 == kWall_q4) continue;
+        frame.color.at(y, x) = nearer.color.at(y, x);
+        frame.disparity.d_q4.at(y, x) = static_cast<std::uint16_t>(kNearer * q4);
+      }
+    const auto people = tracker->track(frame);
+    ASSERT_LE(people.size(), 2u) << i;
+    if (people.size() < 2) continue;
+    ++frames;
+    EXPECT_EQ(people[1].id, 2u);
+    const int seen = seen_joints(people.last(1));
+    if (frames < 3) {
+      EXPECT_EQ(seen, 0) << i;
+    }
+    seen_in += seen > 8;
+  }
+  EXPECT_GT(frames, 10);
+  EXPECT_GE(seen_in, frames - 4);
+}
+
 // 1.05 m high where the adult stands.
 TEST(BodyScenes, AChildIsAPerson) {
   const RenderedPerson& person = RenderedPerson::get();

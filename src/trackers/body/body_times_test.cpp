@@ -70,14 +70,16 @@ Vec3 way_of(const Missed& person) {
 // Who is missed walks on: in a frame that comes three times as late three times as far, at the same speed; at most 20 cm.
 TEST(BodyTimes, WhoIsMissedWalksOnByTheTimeOfFramesThatWereLeftOut) {
   const Missed next = missed(kFrame_s, 1, 1), third = missed(kFrame_s, 1, 3), late = missed(kFrame_s, 1, 15);
+  const Missed half = missed(kFrame_s / 2, 1, 1);
   const Vec3 step = way_of(next);
   EXPECT_GT(step.x, 0.01);
   EXPECT_NEAR(norm(way_of(third) - 3 * step), 0, 1e-9);
   EXPECT_NEAR(norm(way_of(late) - (0.2 / norm(step)) * step), 0, 1e-9);
   for (std::size_t j = 0; j < next.after.count(); ++j) {
-    // Of its pace 0.8 are left after one tick, 0.8^3 after three.
+    // Of its pace 0.8 are left after one tick, 0.8^3 after three and 1 - 0.2 / 2 after half of one.
     EXPECT_NEAR(norm(next.after.joints[j].v_in_rig_m_s - (0.8 / kFrame_s) * step), 0, 1e-9) << j;
     EXPECT_NEAR(norm(third.after.joints[j].v_in_rig_m_s - (0.512 / kFrame_s) * step), 0, 1e-9) << j;
+    EXPECT_NEAR(norm(half.after.joints[j].v_in_rig_m_s - (0.9 / (kFrame_s / 2)) * way_of(half)), 0, 1e-9) << j;
   }
 }
 

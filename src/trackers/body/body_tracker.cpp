@@ -45,11 +45,11 @@ class BodyTracker final : public Tracker {
   struct Tracked {
     std::uint32_t id = 0;
     Body body;
-    bool matched = false;        // with one whom the finder sees
-    Uncover* uncover = nullptr;  // while somebody is before or behind this person
-    bool covered = false;        // somebody is before
-    int confirmed = 0;           // frames that showed enough of a new person
-    bool came_later = false;     // not in the first frame
+    bool matched = false;         // with one whom the finder sees
+    Uncover* uncover = nullptr;   // while somebody is before or behind this person
+    bool covered = false;         // somebody is before
+    int confirmed = 0, flat = 0;  // frames that showed enough of a new person; of these, where it did not stand out
+    bool came_later = false;      // not in the first frame
     std::array<Fingers, 2> fingers = {Fingers(true), Fingers(false)};
   };
   /// A tracked person as this frame shows it.
@@ -308,7 +308,7 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
   for (std::size_t i = 0; i < seen.size() && tracked_.size() < kMostPeople; ++i) {
     if (owners_[i] != nullptr || is_of_another(view, seen, i)) continue;
     if (auto started = Body::start(view, seen[i].body); started && !newcomers_.was_mistaken(started->expected_trunk())) {
-      tracked_.push_back({next_id_++, std::move(*started), true, nullptr, false, 0, frame_ > 0});
+      tracked_.push_back({next_id_++, std::move(*started), true, nullptr, false, 0, 0, frame_ > 0});
       owners_[i] = &tracked_.back();
     }
   }
@@ -317,15 +317,14 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
   timer_.stage("bodies");
   look_at_hands();
   timer_.stage("hands");
-  // The nearest first: what is behind them is theirs to hide.
-  nearer_.clear();
+  nearer_.clear();  // the nearest first: what is behind them is theirs to hide
   for (const Sight& sight : sights_) {
     Body::Hands hands;
     for (std::size_t s = 0; s < 2; ++s)
       if (sight.hands[s]) hands.seen[s] = &hands_[*sight.hands[s]];
-    sight.who->body.track(*sight.frame, *sight.seen, hands, nearer_);
+    const Body::Hands own = sight.who->body.track(*sight.frame, *sight.seen, hands, nearer_);
     nearer_.push_back(&sight.who->body.places());
-    track_fingers(*sight.who, *sight.frame, hands);
+    track_fingers(*sight.who, *sight.frame, own);
   }
   for (Tracked& each : tracked_)
     if (std::ranges::none_of(sights_, [&](const Sight& sight) { return sight.who == &each; })) {
@@ -345,12 +344,17 @@ void BodyTracker::forget() {
   constexpr double kEnough = 1.0 / 3;
   std::erase_if(tracked_, [&](Tracked& each) {
     const double missed = each.body.missed();
-    if (each.confirmed == kConfirm || each.covered) return missed > kForget;
-    if (each.body.seen_share() < kEnough || each.body.flat_frames() > kMostFlat) {
+    if (each.confirmed == kConfirm) return missed > kForget;
+    const bool enough = each.body.seen_share() >= kEnough;
+    if (missed == 0 && enough) {
+      ++each.confirmed;
+      each.flat += each.body.is_flat() && !each.covered;
+    }
+    if (each.covered) return missed > kForget;
+    if (!enough || each.flat > kMostFlat) {
       newcomers_.add_mistake(each.body.expected_trunk());
       return true;
     }
-    if (missed == 0) ++each.confirmed;
     return missed > kForgetNew;
   });
 }
@@ -358,8 +362,8 @@ void BodyTracker::forget() {
 void BodyTracker::track_fingers(Tracked& who, const body::FrameView& frame, const Body::Hands& hands) {
   if (!has_fingers()) return;
   for (const bool left : {true, false}) {
-    const std::size_t side = left ? 0 : 1;
-    who.fingers[side].track(frame, who.body.shows_hand(left) ? hands.seen[side] : nullptr, who.body.places());
+    const SeenHand* const hand = who.body.shows_hand(left) ? hands.seen[left ? 0 : 1] : nullptr;
+    who.fingers[left ? 0 : 1].track(frame, hand, who.body.places());
   }
 }
 
