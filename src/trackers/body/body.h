@@ -37,8 +37,7 @@ class Body {
   };
   /// `nearer`: people before this one, who were tracked in this frame. Returns the hands by the person's own sides, which the
   /// network of bodies may have exchanged.
-  [[nodiscard]] Hands track(const FrameView& frame, const SeenBody& seen, const Hands& hands,
-                            std::span<const Places* const> nearer = {});
+  Hands track(const FrameView& frame, const SeenBody& seen, const Hands& hands, std::span<const Places* const> nearer = {});
   /// A frame in which nothing was seen of the person, perhaps because somebody covers it.
   void miss(const FrameView& frame, bool covered);
 
