@@ -104,36 +104,6 @@ TEST(BodyIdentity, WhoStandsIsUnlikeWhatLies) {
   EXPECT_NEAR(stands->unlike(late, trunk_at({160, 120}, {93, 0})), 0.83, 0.2);
 }
 
-// The trunk shows its back: its left shoulder is 34 px, at 1.9 m 16 cm, to the left of its middle.
-TEST(BodyIdentity, SidesThatTheNetworkExchangesAreTakenBackForEightFramesInARow) {
-  body::test::Map map;
-  map.fill({0, 0, 320, 240}, 4);
-  map.fill({100, 40, 120, 160}, 1.9);
-  const Image<Rgb8> picture({320, 240});
-  const body::FrameView frame{map.view(), picture, 1.0 / 30, BodyModel::kLite, {}};
-  SeenBody same = body::with_sides_exchanged(trunk_at({160, 120}, {0, 93}));
-  for (SeenPoint& point : same.points) point.visible_q15 = 32768;
-  const SeenBody exchanged = body::with_sides_exchanged(same);
-  auto person = body::Body::start(frame, same);
-  ASSERT_TRUE(person);
-  const auto left_m = [&] { return -person->places()[JointId::kLeftShoulder].x; };
-  const auto track = [&](const SeenBody& seen, int frames) {
-    for (int i = 0; i < frames; ++i) person->track(frame, seen, {});
-  };
-  track(same, 5);
-  const double first_m = left_m();
-  EXPECT_NEAR(first_m, 0.16, 0.03);
-  track(exchanged, 8);
-  EXPECT_NEAR(left_m(), first_m, 0.01);
-  track(same, 1);  // the count begins anew
-  track(exchanged, 8);
-  EXPECT_NEAR(left_m(), first_m, 0.01);
-  track(exchanged, 1);
-  EXPECT_LT(left_m(), first_m - 0.03);
-  track(exchanged, 9);  // the network was right
-  EXPECT_NEAR(left_m(), -first_m, 0.03);
-}
-
 // By hand, one tick after it was seen: 35 mm + 250 mm/s / 30 = 43.3 mm, but 80 mm where its network saw none; 1.15 stretches
 // both.
 TEST(BodyIdentity, OfAHandThatItsNetworkDidNotSeeSigmaSaysMore) {

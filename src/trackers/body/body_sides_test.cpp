@@ -110,6 +110,20 @@ TEST(BodySides, HandsGoAlong) {
   EXPECT_LT(person.body->places()[kLeftShoulder].x, -0.1);
 }
 
+TEST(BodySides, ShouldersStayForEightFramesAndThenMoveOver) {
+  Followed person;
+  ASSERT_TRUE(person.body);
+  const auto left_m = [&] { return person.body->places()[kLeftShoulder].x; };
+  const double first_m = left_m();
+  EXPECT_LT(first_m, -0.1);
+  for (int i = 0; i < 8; ++i) {
+    person.body->track(person.frame, person.wrong, person.hands);
+    EXPECT_NEAR(left_m(), first_m, 0.02) << i;
+  }
+  for (int i = 0; i < 12; ++i) person.body->track(person.frame, person.wrong, person.hands);
+  EXPECT_GT(left_m(), 0.1);  // the network was right
+}
+
 TEST(BodySides, WhoComesBackTurnedRoundIsNotExchanged) {
   Followed person;
   ASSERT_TRUE(person.body);
