@@ -58,6 +58,7 @@ class Record : public ::testing::Test {
   /// A gst-launch-1.0 for the tool: black pictures at 50 a second for half a second, then nothing, and it does not end. Its two
   /// sources stay silent when they are opened again, however late that is.
   static std::string with_camera_that_falls_silent() {
+    fs::remove(at("gst-launch-1.0.starts"));
     put(at("gst-launch-1.0"),
         "#!/bin/sh\necho start >> \"$0.starts\"\n"
         "[ $(wc -l < \"$0.starts\") -le 2 ] || exec sleep 1000\n"

@@ -12,8 +12,6 @@ constexpr double kSeenDrift = 0.9, kHiddenDrift = 0.6;  // share of its step tha
 constexpr double kLongestStep_m = 0.2;
 constexpr double kReachBefore_m = 0.95, kReachBehind_m = 0.6;
 
-double length(Vec2 a, Vec2 b) { return std::sqrt(square(a.x - b.x) + square(a.y - b.y)); }
-
 /// The parts of a person's depth that are possible around its trunk.
 DepthRange around(double trunk_z) { return {std::max(trunk_z - kReachBefore_m, kNear_m), trunk_z + kReachBehind_m}; }
 
@@ -36,7 +34,7 @@ bool belongs(const SeenHand& hand, const Point& wrist, double px_per_m) {
   constexpr double kNear_hand_m = 0.12;
   constexpr std::uint16_t kSure = 16384;
   if (hand.score_q15 < kSure) return false;
-  return length({hand.points[0].x_px(), hand.points[0].y_px()}, wrist.at_px) < kNear_hand_m * px_per_m;
+  return distance({hand.points[0].x_px(), hand.points[0].y_px()}, wrist.at_px) < kNear_hand_m * px_per_m;
 }
 
 }  // namespace
@@ -50,8 +48,8 @@ std::optional<Body> Body::start(const FrameView& frame, const SeenBody& seen) {
   const double px_per_m = frame.depth.px_per_m(z + kBehind_m);
   const Points points = points_of(seen, frame.model, frame.picture.size(), px_per_m, adult[Bone::kShoulders]);
   const auto at = [&](JointId id) { return points[id].at_px; };
-  const double trunk_px = length(mean(at(JointId::kLeftShoulder), at(JointId::kRightShoulder)),
-                                 mean(at(JointId::kLeftHip), at(JointId::kRightHip)));
+  const double trunk_px = distance(mean(at(JointId::kLeftShoulder), at(JointId::kRightShoulder)),
+                                   mean(at(JointId::kLeftHip), at(JointId::kRightHip)));
   const Vec3 up = 0.5 * (seen.at(BodyPoint::kLeftShoulder).world_m() + seen.at(BodyPoint::kRightShoulder).world_m());
   const double upright = std::sqrt(square(up.x) + square(up.y)) / std::max(norm(up), 1e-6);
   const double scale = trunk_px / px_per_m / std::max(upright, 0.5) / adult[Bone::kTrunk];
@@ -222,7 +220,7 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     const bool hidden_by_arm =
         is_hand_or_wrist(id) && scene.hands[side] != HandSight::kSeen && is_end_on(fitted_.places, kArmChains[side], lengths_);
     state.seen = chosen[id].on_surface && point.inside && std::abs(p.z - chosen[id].p.z) < kFar_off_m &&
-                 length(at, point.at_px) < std::max(kFar_off_px * point.sigma_px, kTooFar_m * frame.depth.px_per_m(p.z));
+                 distance(at, point.at_px) < std::max(kFar_off_px * point.sigma_px, kTooFar_m * frame.depth.px_per_m(p.z));
     inside += point.inside;
     seen += state.seen;
     const bool was_hidden = state.hidden > 2;
@@ -333,7 +331,7 @@ std::optional<TurnedSquare> Body::hand_region(const FrameView& frame, const Seen
   const Vec2 wrist = at(left ? kLeftWrist : kRightWrist), elbow = at(left ? kLeftElbow : kRightElbow);
   const Vec2 knuckles = mean(at(left ? kLeftIndex : kRightIndex), at(left ? kLeftPinky : kRightPinky));
   const auto unit = [](Vec2 from, Vec2 to) {
-    const double n = std::max(length(from, to), 1e-6);
+    const double n = std::max(distance(from, to), 1e-6);
     return Vec2{(to.x - from.x) / n, (to.y - from.y) / n};
   };
   const Vec2 hand = unit(wrist, knuckles), fore = unit(elbow, wrist);

@@ -7,6 +7,8 @@ constexpr double kHidden = -2.5, kHiddenButVisible = -1.5, kHiddenButHandSeen = 
                  kHandBehind = -3;
 constexpr double kFreeSpace = -6, kIsTrunk = -7, kUnseen = -2, kInTrunk = -4, kMostOffBack = 2;
 
+constexpr double kBehindPlane = 0.24;  // the back, from the plane of shoulders and hips: of the shoulders' width
+
 /// About ln(share), without a library whose last bits differ from processor to processor.
 double log_share(double share) { return 2 * (share - 1) / (share + 1) * 1.3; }
 
@@ -30,11 +32,10 @@ double free_space_score(const Scene& scene, JointId id, Vec3 p) {
 
 /// A hidden arm is behind the trunk or beside it, not in it.
 double inside_trunk_score(const Scene& scene, JointId id, Vec3 p) {
-  constexpr double kBehindPlane_m = 0.24;  // of the shoulders' width
   if (!is_arm(id)) return 0;
   const auto height = scene.map->height_m(scene.trunk, p, scene.width_m());
   if (!height) return 0;
-  const double above = scene.trunk.of(p).z, behind = kBehindPlane_m * scene.width_m();
+  const double above = scene.trunk.of(p).z, behind = kBehindPlane * scene.width_m();
   const bool front = dot(scene.trunk.front, scene.trunk.shoulders) < 0;
   return front ? (above < *height && above > -behind ? kInTrunk : 0) : (above > *height && above < behind ? kInTrunk : 0);
 }
@@ -103,7 +104,7 @@ bool is_of_another(const Scene& scene, JointId id, Vec3 skin) {
 
 std::optional<double> Scene::off_back_m(JointId id, Vec3 p) const {
   constexpr double kHalfWidths = 0.6, kAbove = 0.1, kBelow = 1.3;  // the back: of the trunk's width and length
-  constexpr double kFacing = 0.7, kBehindPlane = 0.24, kArm_m = 0.03;
+  constexpr double kFacing = 0.7, kArm_m = 0.03;
   if (!is_hand_or_wrist(id) || sight_of(id) != HandSight::kAbsent) return std::nullopt;
   if (dot(trunk.front, normalized(trunk.shoulders)) > -kFacing) return std::nullopt;
   const Vec3 q = trunk.of(p);

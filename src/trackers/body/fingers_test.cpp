@@ -115,20 +115,29 @@ TEST(Fingers, NeedSomeDepth) {
   EXPECT_FALSE(place_fingers(map.view(), hand, 1.02)) << "that is a wall";
 }
 
+/// A left hand at 1 m before the cameras, whose fingers are followed.
+struct FollowedHand {
+  Pictured map;
+  SeenHand hand;
+  Places body = test::standing();
+  Fingers fingers{true};
+  Person person;
+  FollowedHand() {
+    map.fill({100, 60, 120, 120}, 1);
+    hand = flat_hand(map.geometry_, 1);
+    body[JointId::kLeftWrist] = {0, 0.08, 1.02};
+    body[JointId::kLeftHand] = {0, 0.01, 1.02};
+    person.skeleton = &kBodyHands;
+    for (Joint& joint : person.joints) joint.state = JointState::kSeen;
+  }
+};
+
 /// A hand that is not seen goes along with its wrist for five frames of 1/30 s; its fingers' doubt grows, and then they are
 /// lost.
 TEST(Fingers, GoAlongWithTheWrist) {
-  Pictured map;
-  map.fill({100, 60, 120, 120}, 1);
-  const SeenHand hand = flat_hand(map.geometry_, 1);
-  Places body = test::standing();
-  body[JointId::kLeftWrist] = {0, 0.08, 1.02};
-  body[JointId::kLeftHand] = {0, 0.01, 1.02};
-  Fingers fingers(true);
-  Person person;
-  person.skeleton = &kBodyHands;
-  for (Joint& joint : person.joints) joint.state = JointState::kSeen;
-  const auto tip = [&]() -> const Joint& { return *person.find(JointId::kLeftIndexTip); };
+  FollowedHand followed;
+  auto& [map, hand, body, fingers, person] = followed;
+  const auto tip = [&followed]() -> const Joint& { return *followed.person.find(JointId::kLeftIndexTip); };
   fingers.publish(person);
   EXPECT_EQ(tip().state, JointState::kLost) << "none were seen yet";
   fingers.track(map.view(), &hand, body);
@@ -151,18 +160,10 @@ TEST(Fingers, GoAlongWithTheWrist) {
 
 /// At 60 frames per second four frames are two ticks, and ten are the last that show it.
 TEST(Fingers, GoAstrayWithTime) {
-  Pictured map;
-  map.fill({100, 60, 120, 120}, 1);
+  FollowedHand followed;
+  auto& [map, hand, body, fingers, person] = followed;
   FrameView frame = map.view();
   frame.frame_s = 1.0 / 60;
-  const SeenHand hand = flat_hand(map.geometry_, 1);
-  Places body = test::standing();
-  body[JointId::kLeftWrist] = {0, 0.08, 1.02};
-  body[JointId::kLeftHand] = {0, 0.01, 1.02};
-  Fingers fingers(true);
-  Person person;
-  person.skeleton = &kBodyHands;
-  for (Joint& joint : person.joints) joint.state = JointState::kSeen;
   fingers.track(frame, &hand, body);
   fingers.publish(person);
   const Joint& tip = *person.find(JointId::kLeftIndexTip);

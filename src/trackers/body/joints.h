@@ -64,6 +64,7 @@ inline Vec2 mean(Vec2 a, Vec2 b) { return {(a.x + b.x) / 2, (a.y + b.y) / 2}; }
 inline Vec3 middle(Vec3 a, Vec3 b) { return 0.5 * (a + b); }
 constexpr double square(double x) { return x * x; }
 inline double distance(Vec3 a, Vec3 b) { return norm(a - b); }
+inline double distance(Vec2 a, Vec2 b) { return std::sqrt(square(a.x - b.x) + square(a.y - b.y)); }
 /// From a point to the nearest one between a and b.
 inline double to_segment(Vec3 p, Vec3 a, Vec3 b) {
   const Vec3 way = b - a;

@@ -25,24 +25,27 @@ TrunkCorners corners_of(const SeenBody& seen) {
 
 Vec2 centre_of(const TrunkCorners& corners) { return mean(mean(corners[0], corners[1]), mean(corners[2], corners[3])); }
 
+TrunkCorners corners_at(const std::array<Vec3, 4>& corners, const Rectified& camera) {
+  TrunkCorners out;
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = camera.project({corners[i].x, corners[i].y, std::max(corners[i].z, kAnyDepth.near_m)});
+  return out;
+}
+
 TrunkCorners expected_corners(const Scene& scene) {
   using enum JointId;
-  const auto at = [&](JointId id) {
-    const Vec3 p = scene.expected[id].p;
-    return scene.depth.geometry->project({p.x, p.y, std::max(p.z, kAnyDepth.near_m)});
-  };
-  return {at(kLeftShoulder), at(kRightShoulder), at(kLeftHip), at(kRightHip)};
+  const auto at = [&](JointId id) { return scene.expected[id].p; };
+  return corners_at({at(kLeftShoulder), at(kRightShoulder), at(kLeftHip), at(kRightHip)}, *scene.depth.geometry);
 }
 
 bool are_sides_exchanged(const TrunkCorners& seen, const TrunkCorners& expected) {
   constexpr double kFromSide = 0.35, kMuchNearer = 0.4;  // shares: of the trunk's length, of the distance
-  const auto length = [](Vec2 a, Vec2 b) { return std::sqrt(square(a.x - b.x) + square(a.y - b.y)); };
-  const double trunk = length(mean(expected[0], expected[1]), mean(expected[2], expected[3]));
-  if (length(expected[0], expected[1]) < kFromSide * trunk) return false;
+  const double trunk = distance(mean(expected[0], expected[1]), mean(expected[2], expected[3]));
+  if (distance(expected[0], expected[1]) < kFromSide * trunk) return false;
   double same = 0, other = 0;
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    same += length(seen[i], expected[i]);
-    other += length(seen[i], expected[i ^ 1]);
+    same += distance(seen[i], expected[i]);
+    other += distance(seen[i], expected[i ^ 1]);
   }
   return other < kMuchNearer * same;
 }

@@ -15,6 +15,8 @@ using TrunkCorners = std::array<Vec2, 4>;
 TrunkCorners corners_of(const SeenBody& seen);
 Vec2 centre_of(const TrunkCorners& corners);
 
+/// Where shoulders and hips, in the order of TrunkCorners, are in the picture.
+TrunkCorners corners_at(const std::array<Vec3, 4>& corners, const Rectified& camera);
 /// Where a scene expects them.
 TrunkCorners expected_corners(const Scene& scene);
 

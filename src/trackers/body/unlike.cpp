@@ -6,8 +6,6 @@
 namespace duo::body {
 namespace {
 
-double length_px(Vec2 a) { return std::sqrt(square(a.x) + square(a.y)); }
-
 /// How far a trunk in the picture is turned from another, 0 .. 2; 0 where one of them is too short to tell.
 double turned_away(const TrunkCorners& a, const TrunkCorners& b, double least_px) {
   const auto down = [](const TrunkCorners& c) {
@@ -15,9 +13,9 @@ double turned_away(const TrunkCorners& a, const TrunkCorners& b, double least_px
     return Vec2{hips.x - up.x, hips.y - up.y};
   };
   const Vec2 p = down(a), q = down(b);
-  const double lengths = length_px(p) * length_px(q);
-  if (length_px(p) < least_px || length_px(q) < least_px) return 0;
-  return 1 - (p.x * q.x + p.y * q.y) / lengths;
+  const double p_px = distance(p, {}), q_px = distance(q, {});
+  if (p_px < least_px || q_px < least_px) return 0;
+  return 1 - (p.x * q.x + p.y * q.y) / (p_px * q_px);
 }
 
 }  // namespace
@@ -31,8 +29,7 @@ double Body::unlike(const FrameView& frame, const SeenBody& seen) const {
   const double z = std::max(expected.z, kAnyDepth.near_m);
   const double aside = 1 + 0.3 * std::min(missed_, 10.0), along = 1 + 0.15 * std::min(missed_, 20.0);
   const Vec2 there = frame.depth.geometry->project({expected.x, expected.y, z});
-  const double off =
-      length_px({there.x - centre.x, there.y - centre.y}) / (lengths_[Bone::kTrunk] * frame.depth.px_per_m(z) * kNear * aside);
+  const double off = distance(there, centre) / (lengths_[Bone::kTrunk] * frame.depth.px_per_m(z) * kNear * aside);
   const double found = trunk_depth(frame.depth, corners, kAnyDepth);
   const double deep = found > 0 ? (found - trunk_z_m_) / ((kNear_depth_m + 0.5 * frame.depth.m_per_px(z)) * along) : 0;
   const TrunkColor color = color_of(frame, corners);
@@ -42,12 +39,10 @@ double Body::unlike(const FrameView& frame, const SeenBody& seen) const {
             square((color.bright - color_.bright) / kBright);
   // Nobody lies down from one tick to the next.
   const double lies = 1 + 0.3 * std::min(missed_ + std::max(frame.ticks() - 1, 0.0), 10.0);
-  TrunkCorners ahead;
-  constexpr std::array kCorners = {JointId::kLeftShoulder, JointId::kRightShoulder, JointId::kLeftHip, JointId::kRightHip};
-  for (std::size_t i = 0; i < ahead.size(); ++i) {
-    const Vec3 p = fitted_.places[kCorners[i]];
-    ahead[i] = frame.depth.geometry->project({p.x, p.y, std::max(p.z, kAnyDepth.near_m)});
-  }
+  using enum JointId;
+  const Places& now = fitted_.places;
+  const TrunkCorners ahead =
+      corners_at({now[kLeftShoulder], now[kRightShoulder], now[kLeftHip], now[kRightHip]}, *frame.depth.geometry);
   const double turned =
       turned_away(ahead, corners, kLeastTrunk * lengths_[Bone::kTrunk] * frame.depth.px_per_m(z)) / (kTurned * lies);
   return std::sqrt(square(off) + square(deep) + square(turned) + std::min(other, kMostOther) / 4);
