@@ -8,8 +8,7 @@ namespace duo::body {
 namespace {
 
 constexpr double kNear_m = kAnyDepth.near_m;
-constexpr double kSeenDrift = 0.9, kHiddenDrift = 0.6;  // share of its step that a joint keeps
-constexpr double kLongestStep_m = 0.2;
+constexpr double kSeenDrift = 0.9, kHiddenDrift = 0.6;  // share of its step that a joint keeps in a tick
 constexpr double kReachBefore_m = 0.95, kReachBehind_m = 0.6;
 
 /// The parts of a person's depth that are possible around its trunk.
@@ -19,14 +18,6 @@ DepthRange around(double trunk_z) { return {std::max(trunk_z - kReachBefore_m, k
 bool is_end_on(const Places& places, const Limb& arm, const Lengths& lengths) {
   constexpr double kAway = 0.5;  // of its length: turned by more than 30 degrees
   return places[arm[2]].z - places[arm[1]].z > kAway * lengths[Bone::kForearm];
-}
-
-/// What is left of 1 after some ticks of which each leaves a share: a fraction of a tick takes its part of that tick's loss. Of
-/// products alone, as std::pow() need not give the same bits on every processor.
-double left_after(double ticks, double share) {
-  double left = 1;
-  for (; ticks >= 1; --ticks) left *= share;
-  return left * (1 - ticks * (1 - share));
 }
 
 /// A hand that its network found far from where the body's network has it is another one.
@@ -67,10 +58,11 @@ Vec3 Body::expected_trunk() const {
 }
 
 void Body::stretch_step(double times) {
-  if (age_ < 2) return;  // one frame shows no speed
+  constexpr double kLongestStep_m = 0.2;  // of what is stretched: nobody knows where it goes meanwhile
+  if (age_ < 2) return;                   // one frame shows no speed
   const auto stretched = [&](Vec3 step) {
-    const double now = times * norm(step);
-    return (now > kLongestStep_m ? kLongestStep_m / now * times : times) * step;
+    const double now = times * norm(step), most = std::max(kLongestStep_m, norm(step));
+    return (now > most ? most / now * times : times) * step;
   };
   pace_ = stretched(pace_);
   for (const JointId id : kFreeJoints) states_[id].step = stretched(states_[id].step);
@@ -123,16 +115,17 @@ Body::Hands Body::track(const FrameView& frame, const SeenBody& seen, const Hand
   sample_limbs(scene, chosen, samples_);
   fit_.run(scene, chosen, samples_, fitted_);
   update(frame, scene, chosen);
-  learn(scene);
+  learn(scene, frame.ticks());
   return own;
 }
 
 void Body::predict(Scene& scene, double ticks) const {
   constexpr double kStartSigma_m = 0.12, kMostSigma_m = 0.3, kAstray = 2;
+  const double seen_drift = left_after(ticks, kSeenDrift), hidden_drift = left_after(ticks, kHiddenDrift);
   Places ahead = fitted_.places;
   for (const JointId id : kFreeJoints) {
     const State& state = states_[id];
-    const double drift = state.seen ? kSeenDrift : missed_ > 0 ? 1 : kHiddenDrift;
+    const double drift = state.seen ? seen_drift : missed_ > 0 ? 1 : hidden_drift;
     ahead[id] = ahead[id] + drift * state.step;
   }
   // A hidden arm or leg goes along with the trunk.
@@ -141,7 +134,7 @@ void Body::predict(Scene& scene, double ticks) const {
     for (const Limb& limb : limbs)
       for (const JointId id : {limb[1], limb[2], limb[3]})
         if (const State& state = states_[id]; state.hidden > 0 && missed_ == 0)
-          ahead[id] = next.in_rig(now.of(fitted_.places[id])) + kHiddenDrift * (state.step - pace_);
+          ahead[id] = next.in_rig(now.of(fitted_.places[id])) + hidden_drift * (state.step - pace_);
   for (const JointId id : kFreeJoints) {
     const State& state = states_[id];
     Expected& expected = scene.expected[id];
@@ -158,13 +151,13 @@ void Body::detect(const FrameView& frame, const SeenBody& seen, const Hands& han
   constexpr double kMostStep_m = 0.06, kGate_m = 0.35;
   const double found =
       trunk_depth(frame.depth, corners_of(seen), {std::max(trunk_z_m_ - kGate_m, kNear_m), trunk_z_m_ + kGate_m});
-  const double most_m = kMostStep_m * (std::max(1.0, frame.ticks()) + missed_);
+  const double most_m = kMostStep_m * (frame.ticks() + missed_);
   if (found > 0) trunk_z_m_ += std::clamp(found - trunk_z_m_, -most_m, most_m);
   scene.trunk_z_m = trunk_z_m_;
   is_flat_ = !stands_out(frame.depth, corners_of(seen));
   region_ = seen.next;
   region_from_px_ = centre_of(corners_of(seen));
-  color_.learn(color_of(frame, corners_of(seen)));
+  color_.learn(color_of(frame, corners_of(seen)), frame.ticks());
   const double px_per_m = frame.depth.px_per_m(trunk_z_m_);
   scene.points = points_of(seen, frame.model, frame.picture.size(), px_per_m, lengths_[Bone::kShoulders]);
   for (const JointId id : kFreeJoints)
@@ -206,11 +199,14 @@ void Body::lift(Scene& scene) const {
 
 void Body::update(const FrameView& frame, const Scene& scene, const Choices& chosen) {
   constexpr double kStepGain = 0.5, kFar_off_m = 0.12, kFar_off_px = 6, kTooFar_m = 0.15;
-  constexpr int kSights = 2, kUnsureSights = 6;
-  constexpr double kMostOnBack = 12;  // ticks, by which three sigma reach over the whole back
-  int inside = 0, seen = 0;
+  constexpr double kLongestStep_m = 0.2;       // per tick
+  constexpr double kShown = 1, kUnsurely = 5;  // ticks
+  constexpr double kMostOnBack = 12;           // ticks, by which three sigma reach over the whole back
+  int inside = 0, looked_at = 0, seen = 0;
   ++age_;
   const double ticks = age_ == 1 ? 1 : frame.ticks();  // before the first frame nothing was hidden for long
+  const double seen_drift = left_after(ticks, kSeenDrift), hidden_drift = left_after(ticks, kHiddenDrift);
+  const double gain = gain_over(ticks, kStepGain), longest_m = kLongestStep_m * ticks;
   for (const JointId id : kFreeJoints) {
     State& state = states_[id];
     const Vec3 p = fitted_.places[id];
@@ -222,14 +218,15 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     state.seen = chosen[id].on_surface && point.inside && std::abs(p.z - chosen[id].p.z) < kFar_off_m &&
                  distance(at, point.at_px) < std::max(kFar_off_px * point.sigma_px, kTooFar_m * frame.depth.px_per_m(p.z));
     inside += point.inside;
+    looked_at += point.inside && frame.is_matched(point.at_px) && !frame.is_covered(point.at_px);
     seen += state.seen;
     const bool was_hidden = state.hidden > 2;
-    state.shown = state.seen ? state.shown + 1 : 0;
+    state.shown = !state.seen ? -1 : state.shown < 0 ? 0 : state.shown + ticks;
     // After a gap one sight may be a mistake, and more of a hand or wrist at which the network of hands did not look; where it
     // looked and saw none, they are not believed again.
     const HandSight sight = is_hand_or_wrist(id) ? scene.hands[side] : HandSight::kSeen;
     const bool on_back = scene.off_back_m(id, p).has_value();
-    const int enough = sight == HandSight::kSeen ? kSights : kUnsureSights;
+    const double enough = sight == HandSight::kSeen ? kShown : kUnsurely;
     const bool believed = state.sure || age_ == 1 || (sight != HandSight::kAbsent && state.shown >= enough);
     state.sure = state.seen && !hidden_by_arm && !on_back && believed && frame.shows(point.at_px) && frame.shows(at);
     state.absent = sight == HandSight::kAbsent;
@@ -241,19 +238,20 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     if (was_hidden && state.seen)
       state.step = {};
     else if (state.seen || is_root(id))
-      state.step = (state.seen ? kSeenDrift : kHiddenDrift) * state.step + kStepGain * off;
+      state.step = (state.seen ? seen_drift : hidden_drift) * state.step + gain * off;
     else
-      state.step = pace_ + kHiddenDrift * (state.step - pace_);
-    if (const double now = norm(state.step); now > kLongestStep_m) state.step = (kLongestStep_m / now) * state.step;
+      state.step = pace_ + hidden_drift * (state.step - pace_);
+    if (const double now = norm(state.step); now > longest_m) state.step = (longest_m / now) * state.step;
   }
-  seen_share_ = static_cast<double>(seen) / std::max(inside, 1);
+  seen_share_.reset();
+  if (2 * looked_at >= inside) seen_share_ = static_cast<double>(seen) / std::max(looked_at, 1);
   missed_ = seen > 0 ? 0 : missed_ + ticks;
-  learn_pace();
+  learn_pace(ticks);
 }
 
-void Body::learn_pace() {
+void Body::learn_pace(double ticks) {
   using enum JointId;
-  constexpr double kGain = 0.2;
+  constexpr double kGain = 0.2;  // per tick
   Vec3 sum;
   int count = 0;
   for (const JointId id : {kLeftShoulder, kRightShoulder, kLeftHip, kRightHip})
@@ -261,10 +259,11 @@ void Body::learn_pace() {
       sum = sum + states_[id].step;
       ++count;
     }
-  if (count > 1) pace_ = (1 - kGain) * pace_ + (kGain / count) * sum;
+  const double gain = gain_over(ticks, kGain);
+  if (count > 1) pace_ = (1 - gain) * pace_ + (gain / count) * sum;
 }
 
-void Body::learn(const Scene& scene) {
+void Body::learn(const Scene& scene, double ticks) {
   using enum JointId;
   constexpr double kFacing = 0.7;  // of the width: turned by less than 45 degrees
   const auto seen = [&](JointId id) { return states_[id].seen; };
@@ -298,7 +297,8 @@ void Body::learn(const Scene& scene) {
       lengths_.learn(Bone::kNeckHead, distance(shoulders, measured(kHead)), 1);
       lengths_.learn(Bone::kHead, distance(fitted_.places[kNeck], fitted_.places[kHead]), 1);
     }
-    if (std::abs(scene.across.shoulders.z) < kFacing) map_.learn(scene.depth, trunk_axes(fitted_.places), fitted_.places);
+    if (std::abs(scene.across.shoulders.z) < kFacing)
+      map_.learn(scene.depth, trunk_axes(fitted_.places), fitted_.places, ticks);
   }
 }
 
@@ -306,13 +306,14 @@ void Body::learn(const Scene& scene) {
 void Body::miss(const FrameView& frame, bool covered) {
   const double keeps = left_after(frame.ticks(), covered ? 0.97 : 0.8);
   missed_ += frame.ticks();
+  seen_share_.reset();
   trunk_z_m_ += pace_.z;
   for (const JointId id : kFreeJoints) {
     State& state = states_[id];
     fitted_.places[id] = fitted_.places[id] + pace_;
     state.step = keeps * pace_;
     state.seen = state.sure = false;
-    state.shown = 0;
+    state.shown = -1;
     state.hidden += frame.ticks();
     state.astray += frame.ticks();
   }

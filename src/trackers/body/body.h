@@ -45,8 +45,9 @@ class Body {
   const Lengths& lengths() const { return lengths_; }
   /// Ticks since anything was seen of the person.
   double missed() const { return missed_; }
-  /// Of the joints that are marked in the picture, how many were seen when it was tracked last.
-  double seen_share() const { return seen_share_; }
+  /// Of the joints that are marked in the picture, where depth was looked for and nobody stands before them, how many the last
+  /// frame showed. None where the person was not looked at, or where these are less than half of them.
+  std::optional<double> seen_share() const { return seen_share_; }
   /// Whether the trunk did not stand out of what is beside it when it was tracked last, as a picture on a wall does not.
   bool is_flat() const { return is_flat_; }
   /// Depth of the trunk's skin.
@@ -63,19 +64,19 @@ class Body {
     Vec3 step;          // since the last frame, smoothed
     double hidden = 0;  // ticks since it was seen
     double astray = 0;  // the same, but bounded while it lies on the back
-    int shown = 0;      // frames since it was not
+    double shown = -1;  // ticks from the first frame that showed it to the last one; less than 0: hidden
     bool seen = false, sure = false;
     bool absent = false;  // its network saw no hand
   };
 
   explicit Body(double scale) : lengths_(scale) {}
   void predict(Scene& scene, double ticks) const;
-  void learn_pace();
+  void learn_pace(double ticks);
   void detect(const FrameView& frame, const SeenBody& seen, const Hands& hands, Scene& scene);
   void detect_hand(const FrameView& frame, const SeenHand* hand, bool left, Scene& scene);
   void lift(Scene& scene) const;
   void update(const FrameView& frame, const Scene& scene, const Choices& chosen);
-  void learn(const Scene& scene);
+  void learn(const Scene& scene, double ticks);
 
   Lengths lengths_;
   SurfaceMap map_;
@@ -90,7 +91,7 @@ class Body {
   TrunkColor color_;
   double trunk_z_m_ = 0;
   Vec3 pace_;  // of the trunk's middle from frame to frame, as it walks
-  double seen_share_ = 0;
+  std::optional<double> seen_share_;
   double missed_ = 0;  // ticks
   int age_ = 0;
   bool is_flat_ = false;

@@ -5,6 +5,7 @@
 #include "trackers/body/body.h"
 #include "trackers/body/rendered_person.h"
 #include "trackers/body/standing.h"
+#include "trackers/body/trial.h"
 
 namespace duo {
 namespace {
@@ -58,6 +59,65 @@ TEST(BodyNewcomers, WhoComesLaterIsSeenFromTheThirdFrameOn) {
     EXPECT_EQ(seen_joints(people[0]) > 8, i >= 2) << i;
     people = tracker->track(*person.frames[static_cast<std::size_t>(i) + 1]);
   }
+}
+
+TEST(BodyTrial, TenFramesThatShowEnoughMakeAPerson) {
+  body::Trial trial;
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(trial.is_believed(), i >= 3);
+    EXPECT_FALSE(trial.is_over());
+    trial.add(std::nullopt, false, 1);  // nothing was looked at
+    trial.add(0.34, i > 6, 1);
+    EXPECT_FALSE(trial.is_mistake()) << i;
+  }
+  EXPECT_TRUE(trial.is_over());
+}
+
+// At 60 frames a second two ticks after the first frame are in the fifth one; at 10 in the second.
+TEST(BodyTrial, GoesByTime) {
+  const auto frames_until = [](double ticks, double share, bool is_flat, auto done) {
+    body::Trial trial;
+    for (int frames = 1;; ++frames) {
+      trial.add(share, is_flat, ticks);
+      if (done(trial)) return frames;
+    }
+  };
+  const auto is_believed = [](const body::Trial& trial) { return trial.is_believed(); };
+  const auto is_over = [](const body::Trial& trial) { return trial.is_over(); };
+  const auto is_mistake = [](const body::Trial& trial) { return trial.is_mistake(); };
+  struct Want {
+    double ticks;
+    int believed, over, flat, poor;
+  };
+  for (const Want& want : {Want{0.5, 5, 19, 7, 3}, Want{1, 3, 10, 4, 2}, Want{2, 2, 6, 3, 2}, Want{3, 2, 4, 2, 2}}) {
+    EXPECT_EQ(frames_until(want.ticks, 0.9, false, is_believed), want.believed) << want.ticks;
+    EXPECT_EQ(frames_until(want.ticks, 0.9, false, is_over), want.over) << want.ticks;
+    EXPECT_EQ(frames_until(want.ticks, 0.9, true, is_mistake), want.flat) << want.ticks;
+    EXPECT_EQ(frames_until(want.ticks, 0.1, false, is_mistake), want.poor) << want.ticks;
+  }
+}
+
+// One poor frame may be a slip of the network.
+TEST(BodyTrial, WhoShowsTooLittleTwiceInARowIsNone) {
+  body::Trial trial;
+  for (const double share : {0.32, 0.9, 0.32, 0.9, 0.32}) {
+    trial.add(share, false, 1);
+    EXPECT_FALSE(trial.is_mistake()) << share;
+  }
+  trial.add(std::nullopt, false, 1);
+  EXPECT_FALSE(trial.is_mistake());
+  trial.add(0.32, false, 1);
+  EXPECT_TRUE(trial.is_mistake());
+}
+
+TEST(BodyTrial, WhatIsFlatInFourFramesIsNone) {
+  body::Trial trial;
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_FALSE(trial.is_mistake());
+    trial.add(0.9, true, 1);
+    trial.add(0.9, false, 1);
+  }
+  EXPECT_TRUE(trial.is_mistake());
 }
 
 /// Once started, it turns into a picture on a wall: one plane through the person's depth.

@@ -273,7 +273,7 @@ TEST(BodySurfaceMap, HeightsGoAlongWithTheTrunk) {
   EXPECT_FALSE(map.height_m(axes, on_plane + Vec3{0.5, 0, 0}, 0.345));
   Map depth;
   depth.fill({0, 0, 320, 240}, 1.95);  // a flat chest
-  for (int i = 0; i < 20; ++i) map.learn(depth.view(), axes, places);
+  for (int i = 0; i < 20; ++i) map.learn(depth.view(), axes, places, 1);
   EXPECT_NEAR(*map.height_m(axes, on_plane, 0.345), 0.05, 0.01);
   // Another place: the map goes with the person.
   Places moved = places;

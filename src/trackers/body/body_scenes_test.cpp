@@ -44,9 +44,10 @@ Frame wall() {
   return out;
 }
 
-/// Draws over a frame: `from` says of a pixel which of the source it is, if it is one of the person's.
+/// Draws over a frame: `from` says of a pixel which of the source it is, if it is one of the person's. `nearer`: times as large
+/// disparities.
 template <class From>
-void draw_person(Frame& frame, int i, From from) {
+void draw_person(Frame& frame, int i, From from, double nearer = 1) {
   const Frame& source = *RenderedPerson::get().frames[there(i)];
   const Cutout person{&source};
   for (int y = 0; y < frame.color.height(); ++y)
@@ -54,7 +55,7 @@ void draw_person(Frame& frame, int i, From from) {
       const auto [from_x, from_y] = from(x, y);
       if (!person.has(from_x, from_y)) continue;
       frame.color.at(y, x) = source.color.at(from_y, from_x);
-      frame.disparity.d_q4.at(y, x) = source.disparity.d_q4.at(from_y, from_x);
+      frame.disparity.d_q4.at(y, x) = static_cast<std::uint16_t>(nearer * source.disparity.d_q4.at(from_y, from_x));
     }
 }
 
@@ -153,6 +154,141 @@ TEST(BodyScenes, WhoComesLaterBesideSomebodyNearerIsSeenSoon) {
   }
   EXPECT_GT(frames, 10);
   EXPECT_GE(seen_in, frames - 4);
+}
+
+/// Depth was looked for in a part of the frame alone.
+void match_only(Frame& frame, Window part) {
+  frame.matched = part;
+  for (int y = 0; y < frame.disparity.d_q4.height(); ++y)
+    for (int x = 0; x < frame.disparity.d_q4.width(); ++x)
+      if (!part.contains(y, x)) frame.disparity.d_q4.at(y, x) = Disparity::kNone;
+}
+
+// Whoever is found in a frame that was matched as a whole has no depth in the two after it, which are matched around the other
+// one alone. They say nothing against it.
+TEST(BodyScenes, WhoIsFoundBesideSomebodyStaysWhereDepthIsNotYetLookedFor) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  constexpr int kSteps = 30, kComes = 2, kAside_px = 75, kAlone = 2;
+  const Size size = person.rectified.size;
+  int after = -1;  // frames since it was found
+  for (int i = 0; i < kSteps; ++i) {
+    Frame frame = wall();
+    draw_person(frame, i, [&](int x, int y) { return std::pair(x + kAside_px, y); });
+    if (i >= kComes) draw_person(frame, i, [&](int x, int y) { return std::pair(x - kAside_px, y); });
+    if (after >= 0 && after < kAlone) match_only(frame, {0, 0, size.width / 2, size.height});
+    const auto people = tracker->track(frame);
+    if (after >= 0 || people.size() > 1) ++after;
+    if (after < 0) continue;
+    ASSERT_EQ(people.size(), 2u) << i;
+    EXPECT_EQ(people[1].id, 2u) << i;
+    const bool is_seen = seen_joints(people.last(1)) > 8;
+    EXPECT_TRUE(after != kAlone || !is_seen) << i;
+    EXPECT_TRUE(after < kAlone + 3 || is_seen) << i;
+  }
+  EXPECT_GT(after, 12);
+}
+
+// A mirror shows somebody behind the wall, who is as much smaller as farther away and does the same with the other hand.
+TEST(BodyScenes, BesideAMirrorThereAreTwoAndEachKeepsItsNumber) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  constexpr int kSteps = 30, kAside_px = 75;
+  constexpr double kFarther = 0.7;
+  const Size size = person.rectified.size;
+  int both = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    Frame frame = wall();
+    draw_box(frame, Window::all(size), {150, 150, 140}, 100);
+    draw_person(
+        frame, i,
+        [&](int x, int y) {
+          return std::pair(static_cast<int>(size.width / 2 - (x - size.width / 2 - kAside_px) / kFarther),
+                           static_cast<int>(size.height / 2 + (y - size.height / 2) / kFarther));
+        },
+        kFarther);
+    draw_person(frame, i, [&](int x, int y) { return std::pair(x + kAside_px, y); });
+    const auto people = tracker->track(frame);
+    ASSERT_LE(people.size(), 2u);
+    for (const Person& found : people) EXPECT_LE(found.id, 2u) << i;
+    if (people.size() < 2) continue;
+    both += seen_joints(people.first(1)) > 8 && seen_joints(people.last(1)) > 8;
+    const double apart_m = people[0].find(JointId::kPelvis)->p_in_rig_m.z - people[1].find(JointId::kPelvis)->p_in_rig_m.z;
+    EXPECT_GT(std::abs(apart_m), 0.6) << i;
+  }
+  EXPECT_GT(both, kSteps / 2);
+}
+
+// Four rows of five, half as large and twice as far away; who stands before covers the legs of who stands behind.
+TEST(BodyScenes, OfTwentyPeopleEightAreFollowedAtMostAndEachIsOne) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  constexpr int kSteps = 30, kRows = 4, kColumn_px = 64, kRow_px = 36, kSmaller = 2;
+  constexpr double kNear_px = 10;
+  const Size size = person.rectified.size;
+  std::size_t most = 0;
+  int seen = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    Frame frame = wall();
+    draw_box(frame, Window::all(size), {150, 150, 140}, 90);
+    for (int row = 0; row < kRows; ++row)
+      draw_person(
+          frame, i,
+          [&](int x, int y) {
+            return std::pair(size.width / 2 + kSmaller * (x % kColumn_px - kColumn_px / 2), kSmaller * (y - row * kRow_px));
+          },
+          (1 + 0.1 * row) / kSmaller);
+    const auto people = tracker->track(frame);
+    ASSERT_LE(people.size(), 8u);
+    most = std::max(most, people.size());
+    for (const Person& found : people)
+      for (const JointId id : {JointId::kHead, JointId::kLeftShoulder, JointId::kRightShoulder}) {
+        const Joint& joint = *found.find(id);
+        if (joint.state != JointState::kSeen) continue;
+        ++seen;
+        const double at_px = person.rectified.project(joint.p_in_rig_m).x,
+                     truth_px = person.rectified.project(truth_of(id, i)).x;
+        const double off_px = at_px - (truth_px - size.width / 2) / kSmaller - kColumn_px / 2;
+        EXPECT_LT(std::abs(std::remainder(off_px, kColumn_px)), kNear_px) << name_of(id) << " in frame " << i;
+      }
+  }
+  EXPECT_GT(most, 2u);
+  EXPECT_GT(seen, 100);
+}
+
+// From two metres to half a metre, until the picture shows little more than a face.
+TEST(BodyScenes, OfWhomComesNearOnlyWhatIsInThePictureIsSeen) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  constexpr int kSteps = 48;
+  constexpr double kNearest = 4;
+  const Size size = person.rectified.size;
+  const double row_px = person.rectified.project(truth_of(JointId::kLeftShoulder, 0)).y;
+  int seen_near = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double nearer = 1 / (1 - (1 - 1 / kNearest) * i / (kSteps - 1));
+    Frame frame = wall();
+    draw_person(
+        frame, i,
+        [&](int x, int y) {
+          return std::pair(static_cast<int>(size.width / 2 + (x - size.width / 2) / nearer),
+                           static_cast<int>(row_px + (y - row_px) / nearer));
+        },
+        nearer);
+    const auto people = tracker->track(frame);
+    ASSERT_LE(people.size(), 1u) << i;
+    for (const Person& found : people)
+      for (std::size_t j = 0; j < found.count(); ++j) {
+        if (found.joints[j].state != JointState::kSeen) continue;
+        const Vec3 p = found.joints[j].p_in_rig_m;
+        const Vec2 at = person.rectified.project(p);
+        seen_near += nearer > 2;
+        EXPECT_NEAR(p.z, truth_of(JointId::kHead, i).z / nearer, 0.4) << name_of(kBody.joints[j].id) << " in frame " << i;
+        EXPECT_TRUE(at.x > -25 && at.y > -25 && at.x < size.width + 25 && at.y < size.height + 25)
+            << name_of(kBody.joints[j].id) << " at " << at.x << " " << at.y << " in frame " << i;
+      }
+  }
+  EXPECT_GT(seen_near, 20);
 }
 
 // 1.05 m high where the adult stands.

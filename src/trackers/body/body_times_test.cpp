@@ -102,6 +102,60 @@ TEST(BodyTimes, TheDoubtOfWhoIsMissedGrowsWithTime) {
   }
 }
 
+// By hand: 0.9 * 0.9; half of a tenth is lost in half a tick. A gain of a half and of a half of what is left; a half of a half.
+TEST(BodyTimes, SharesAndGainsGoByTicks) {
+  EXPECT_DOUBLE_EQ(body::left_after(1, 0.9), 0.9);
+  EXPECT_DOUBLE_EQ(body::left_after(2, 0.9), 0.81);
+  EXPECT_DOUBLE_EQ(body::left_after(0.5, 0.9), 0.95);
+  EXPECT_DOUBLE_EQ(body::gain_over(1, 0.5), 0.5);
+  EXPECT_DOUBLE_EQ(body::gain_over(2, 0.5), 0.75);
+  EXPECT_DOUBLE_EQ(body::gain_over(0.5, 0.5), 0.25);
+  EXPECT_EQ(body::ticks_in(33333333e-9), 1);
+  EXPECT_EQ(body::ticks_in(16666667e-9), 0.5);
+  EXPECT_EQ(body::ticks_in(1001.0 / 15000), 2);
+}
+
+/// In how many frames a wrist shows, after twelve ticks without depth, until it is called seen. Its hand is too small for its
+/// network.
+int frames_until_seen(double frame_s) {
+  constexpr int kMost = 30, kHidden_px = 14;
+  constexpr double kBefore_s = 0.2, kHidden_s = 0.4;
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = make_body_tracker();
+  EXPECT_TRUE(
+      tracker->prepare({.rig = person.rig, .rectified = person.rectified, .frame_s = frame_s, .body_model = BodyModel::kLite}));
+  Frame shown = copy_of(*person.frames[0]), hidden = copy_of(*person.frames[0]);
+  for (const SyntheticJoint& joint : person.joints[0])
+    if (joint.id == JointId::kRightWrist || joint.id == JointId::kRightHand) {
+      const Vec2 at = person.rectified.project(person.rectified.rig_from_left * joint.p_in_left_m);
+      for (int y = -kHidden_px; y <= kHidden_px; ++y)
+        for (int x = -kHidden_px; x <= kHidden_px; ++x) {
+          const int to_x = static_cast<int>(at.x) + x, to_y = static_cast<int>(at.y) + y;
+          if (to_x >= 0 && to_y >= 0 && to_x < hidden.color.width() && to_y < hidden.color.height())
+            hidden.disparity.d_q4.at(to_y, to_x) = Disparity::kNone;
+        }
+    }
+  int before = static_cast<int>(std::lround(kBefore_s / frame_s)), between = static_cast<int>(std::lround(kHidden_s / frame_s));
+  for (int i = 0; i < before + between + kMost; ++i) {
+    Frame& frame = i >= before && i < before + between ? hidden : shown;
+    frame.t_ns = static_cast<TimeNs>(std::llround(1e9 * frame_s * i));
+    const auto people = tracker->track(frame);
+    if (people.size() != 1) return -1;
+    const bool seen = people[0].find(JointId::kRightWrist)->state == JointState::kSeen;
+    if (i == before - 1 && !seen) return -2;
+    if (i == before + between - 1 && seen) return -3;
+    if (i >= before + between && seen) return i - before - between + 1;
+  }
+  return kMost;
+}
+
+// Five ticks after the first frame that shows it, of which there are ten, five, or three.
+TEST(BodyTimes, AHandThatNoNetworkSawIsBelievedByTime) {
+  EXPECT_EQ(frames_until_seen(1.0 / 60), 11);
+  EXPECT_EQ(frames_until_seen(1.0 / 30), 6);
+  EXPECT_EQ(frames_until_seen(1.0 / 15), 4);
+}
+
 // Half a second after it was seen last somebody new is forgotten.
 TEST(BodyTimes, SomebodyNewIsForgottenByTime) {
   const RenderedPerson& person = RenderedPerson::get();

@@ -14,6 +14,7 @@
 #include "trackers/body/filled_margin.h"
 #include "trackers/body/fingers.h"
 #include "trackers/body/newcomers.h"
+#include "trackers/body/trial.h"
 #include "trackers/body/uncover.h"
 
 namespace duo {
@@ -45,11 +46,11 @@ class BodyTracker final : public Tracker {
   struct Tracked {
     std::uint32_t id = 0;
     Body body;
-    bool matched = false;         // with one whom the finder sees
-    Uncover* uncover = nullptr;   // while somebody is before or behind this person
-    bool covered = false;         // somebody is before
-    int confirmed = 0, flat = 0;  // frames that showed enough of a new person; of these, where it did not stand out
-    bool came_later = false;      // not in the first frame
+    bool matched = false;        // with one whom the finder sees
+    Uncover* uncover = nullptr;  // while somebody is before or behind this person
+    bool covered = false;        // somebody is before
+    body::Trial trial = {};
+    bool came_later = false;  // not in the first frame
     std::array<Fingers, 2> fingers = {Fingers(true), Fingers(false)};
   };
   /// A tracked person as this frame shows it.
@@ -73,8 +74,7 @@ class BodyTracker final : public Tracker {
   /// Adds where to look for those who are not followed: who was missed, and in a frame that was matched as a whole who is new.
   void look_elsewhere(const body::FrameView& frame, bool whole);
   void look_at_hands();
-  /// Drops those who are gone, and who was taken for somebody by mistake: of a person some joints are seen in each of its first
-  /// ten frames, in most of which it stands out.
+  /// Drops those who are gone, and who was taken for somebody by mistake.
   void forget();
   void track_fingers(Tracked& who, const body::FrameView& frame, const Body::Hands& hands);
   void publish(const body::FrameView& frame);
@@ -297,8 +297,13 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
   DUO_CHECK(finder_ != nullptr);
   timer_.start(times_, setup_.time_stages);
   const View<const Rgb8> picture = margin_.fill(frame.color);
-  const body::FrameView view{
-      {frame.disparity.d_q4, &setup_.rectified}, picture, time_since_last(frame), setup_.body_model, {}, margin_.mask()};
+  const body::FrameView view{{frame.disparity.d_q4, &setup_.rectified},
+                             picture,
+                             time_since_last(frame),
+                             setup_.body_model,
+                             {},
+                             margin_.mask(),
+                             frame.matched};
   uncover(view);
   timer_.stage("fit");
   look_elsewhere(view, frame.matched.empty());
@@ -308,7 +313,7 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
   for (std::size_t i = 0; i < seen.size() && tracked_.size() < kMostPeople; ++i) {
     if (owners_[i] != nullptr || is_of_another(view, seen, i)) continue;
     if (auto started = Body::start(view, seen[i].body); started && !newcomers_.was_mistaken(started->expected_trunk())) {
-      tracked_.push_back({next_id_++, std::move(*started), true, nullptr, false, 0, 0, frame_ > 0});
+      tracked_.push_back({next_id_++, std::move(*started), true, nullptr, false, {}, frame_ > 0});
       owners_[i] = &tracked_.back();
     }
   }
@@ -340,22 +345,13 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
 
 void BodyTracker::forget() {
   constexpr double kForget = 75, kForgetNew = 15;  // ticks
-  constexpr int kConfirm = 10, kMostFlat = 3;      // frames
-  constexpr double kEnough = 1.0 / 3;
   std::erase_if(tracked_, [&](Tracked& each) {
     const double missed = each.body.missed();
-    if (each.confirmed == kConfirm) return missed > kForget;
-    const bool enough = each.body.seen_share() >= kEnough;
-    if (missed == 0 && enough) {
-      ++each.confirmed;
-      each.flat += each.body.is_flat() && !each.covered;
-    }
-    if (each.covered) return missed > kForget;
-    if (!enough || each.flat > kMostFlat) {
-      newcomers_.add_mistake(each.body.expected_trunk());
-      return true;
-    }
-    return missed > kForgetNew;
+    if (each.trial.is_over()) return missed > kForget;
+    each.trial.add(each.body.seen_share(), each.body.is_flat(), body::ticks_in(setup_.frame_s));
+    if (!each.trial.is_mistake()) return missed > (each.covered ? kForget : kForgetNew);
+    newcomers_.add_mistake(each.body.expected_trunk());
+    return true;
   });
 }
 
@@ -368,7 +364,6 @@ void BodyTracker::track_fingers(Tracked& who, const body::FrameView& frame, cons
 }
 
 void BodyTracker::publish(const body::FrameView& frame) {
-  constexpr int kBelieve = 3;  // frames
   people_.clear();
   const Mat3 left_from_rig = transposed(setup_.rectified.rig_from_left);
   for (const Tracked& each : tracked_) {
@@ -385,7 +380,7 @@ void BodyTracker::publish(const body::FrameView& frame) {
         joint.v_px = pixel->y;
       }
       // Of what is no person most is dropped before it is believed.
-      if (each.came_later && each.confirmed < kBelieve && joint.state == JointState::kSeen) joint.state = JointState::kInferred;
+      if (each.came_later && !each.trial.is_believed() && joint.state == JointState::kSeen) joint.state = JointState::kInferred;
     }
     person.sum_up();
   }

@@ -9,6 +9,7 @@
 
 #include "duoptic/geometry.h"
 #include "duoptic/skeleton.h"
+#include "trackers/body/over_time.h"
 
 namespace duo::body {
 
@@ -71,9 +72,6 @@ inline double to_segment(Vec3 p, Vec3 a, Vec3 b) {
   const double t = std::clamp(dot(p - a, way) / std::max(dot(way, way), 1e-9), 0.0, 1.0);
   return distance(p, a + t * way);
 }
-
-/// The tracker's unit of time, whatever the frames' rate is.
-inline constexpr double kTick_s = 1.0 / 30;
 
 /// How far a joint may move from where it was expected: one standard deviation.
 ///

@@ -85,10 +85,10 @@ TrunkColor color_of(const FrameView& frame, const TrunkCorners& corners) {
   return {red / sum, green / sum, sum / (3 * 255.0 * count), true};
 }
 
-void TrunkColor::learn(const TrunkColor& now) {
-  constexpr double kGain = 0.05;
+void TrunkColor::learn(const TrunkColor& now, double ticks) {
+  constexpr double kGain = 0.05;  // per tick
   if (!now.known) return;
-  const double gain = known ? kGain : 1;
+  const double gain = known ? gain_over(ticks, kGain) : 1;
   *this = {red + gain * (now.red - red), green + gain * (now.green - green), bright + gain * (now.bright - bright), true};
 }
 

@@ -31,8 +31,8 @@ struct TrunkColor {
   double red = 1.0 / 3, green = 1.0 / 3, bright = 0;
   bool known = false;
 
-  /// Follows what is seen now, slowly.
-  void learn(const TrunkColor& now);
+  /// Follows what is seen now, slowly. `ticks`: since the last time.
+  void learn(const TrunkColor& now, double ticks);
 };
 
 /// Of what nobody covers; unknown where that is little.

@@ -52,8 +52,9 @@ std::optional<double> SurfaceMap::height_m(const TrunkAxes& axes, Vec3 p, double
   return front ? height : -height;
 }
 
-void SurfaceMap::learn(const DepthView& depth, const TrunkAxes& axes, const Places& joints) {
-  constexpr double kArm_m = 0.11, kMost_m = 0.22, kGain = 0.2;
+void SurfaceMap::learn(const DepthView& depth, const TrunkAxes& axes, const Places& joints, double ticks) {
+  constexpr double kArm_m = 0.11, kMost_m = 0.22, kGain = 0.2;  // per tick
+  const double least_gain = gain_over(ticks, kGain);
   const Rectified& geometry = *depth.geometry;
   auto& cells = sides_[seen_from_front(axes) ? 0 : 1];
   for (int row = 0; row < kRows; ++row)
@@ -79,7 +80,7 @@ void SurfaceMap::learn(const DepthView& depth, const TrunkAxes& axes, const Plac
       const auto at_cell = cell_of(axes, q);
       if (!at_cell) continue;
       Cell& cell = cells[*at_cell];
-      const double gain = std::max(kGain, 1.0 / (cell.count + 1));
+      const double gain = std::max(least_gain, 1.0 / (cell.count + 1));
       cell.height_m += static_cast<float>(gain * (q.z - cell.height_m));
       cell.count = static_cast<std::uint8_t>(std::min(cell.count + 1, 200));
     }

@@ -32,8 +32,8 @@ class SurfaceMap {
   /// Height of the trunk's surface at a point before or behind the plane, on the side that the cameras see; none beside the
   /// trunk.
   std::optional<double> height_m(const TrunkAxes& axes, Vec3 p, double width_m) const;
-  /// Takes in what lies at least 11 cm away from the arms.
-  void learn(const DepthView& depth, const TrunkAxes& axes, const Places& joints);
+  /// Takes in what lies at least 11 cm away from the arms. `ticks`: since the last time.
+  void learn(const DepthView& depth, const TrunkAxes& axes, const Places& joints, double ticks);
 
  private:
   static constexpr int kColumns = 14, kRows = 14;
