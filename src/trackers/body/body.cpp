@@ -96,8 +96,7 @@ Window Body::expected_box(const FrameView& frame) const {
   return {whole(x0), whole(y0), whole(x1) - whole(x0) + 1, whole(y1) - whole(y0) + 1};
 }
 
-Body::Hands Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hands,
-                        std::span<const Places* const> nearer) {
+void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hands, std::span<const Places* const> nearer) {
   Scene scene;
   Choices chosen;
   scene.depth = frame.depth;
@@ -109,6 +108,7 @@ Body::Hands Body::track(const FrameView& frame, const SeenBody& seen, const Hand
   if (missed_ > 0) sides_.forget();
   const bool exchanged = sides_.are_exchanged(seen, expected_corners(scene), frame.ticks());
   const Hands own = exchanged ? Hands{{hands.seen[1], hands.seen[0]}} : hands;
+  own_hands_ = own.seen;
   detect(frame, exchanged ? with_sides_exchanged(seen) : seen, own, scene);
   lift(scene);
   choose(scene, chosen);
@@ -116,7 +116,6 @@ Body::Hands Body::track(const FrameView& frame, const SeenBody& seen, const Hand
   fit_.run(scene, chosen, samples_, fitted_);
   update(frame, scene, chosen);
   learn(scene, frame.ticks());
-  return own;
 }
 
 void Body::predict(Scene& scene, double ticks) const {
@@ -307,6 +306,7 @@ void Body::miss(const FrameView& frame, bool covered) {
   const double keeps = left_after(frame.ticks(), covered ? 0.97 : 0.8);
   missed_ += frame.ticks();
   seen_share_.reset();
+  own_hands_ = {};
   trunk_z_m_ += pace_.z;
   for (const JointId id : kFreeJoints) {
     State& state = states_[id];

@@ -35,9 +35,8 @@ class Body {
   struct Hands {
     std::array<const SeenHand*, 2> seen = {};  // left, right; null: not asked
   };
-  /// `nearer`: people before this one, who were tracked in this frame. Returns the hands by the person's own sides, which the
-  /// network of bodies may have exchanged.
-  Hands track(const FrameView& frame, const SeenBody& seen, const Hands& hands, std::span<const Places* const> nearer = {});
+  /// `nearer`: people before this one, who were tracked in this frame.
+  void track(const FrameView& frame, const SeenBody& seen, const Hands& hands, std::span<const Places* const> nearer = {});
   /// A frame in which nothing was seen of the person, perhaps because somebody covers it.
   void miss(const FrameView& frame, bool covered);
 
@@ -52,9 +51,12 @@ class Body {
   bool is_flat() const { return is_flat_; }
   /// Depth of the trunk's skin.
   double trunk_z_m() const { return trunk_z_m_; }
-  /// Whether the last frame showed a hand to its network, where the body has it.
-  bool shows_hand(bool left) const {
-    return sight_[left ? 0 : 1] == HandSight::kSeen && states_[left ? JointId::kLeftHand : JointId::kRightHand].seen;
+  /// The person's own left or right hand as its network saw it in the last frame, where the body has it, else null. The network
+  /// of bodies may have exchanged the hands that track() was given. Valid as long as these.
+  const SeenHand* shown_hand(bool left) const {
+    const bool shown =
+        sight_[left ? 0 : 1] == HandSight::kSeen && states_[left ? JointId::kLeftHand : JointId::kRightHand].seen;
+    return shown ? own_hands_[left ? 0 : 1] : nullptr;
   }
   /// Fills the joints of kBody, with which the skeleton of `person` begins, but for their pixels.
   void publish(const FrameView& frame, Person& person) const;
@@ -86,8 +88,9 @@ class Body {
   Fit fit_;
   std::array<HandShift, 2> hand_shift_ = {};  // left, right
   std::array<HandSight, 2> sight_ = {};
-  TurnedSquare region_;  // where the body was looked for last
-  Vec2 region_from_px_;  // where its trunk was then
+  std::array<const SeenHand*, 2> own_hands_ = {};  // of the last frame
+  TurnedSquare region_;                            // where the body was looked for last
+  Vec2 region_from_px_;                            // where its trunk was then
   TrunkColor color_;
   double trunk_z_m_ = 0;
   Vec3 pace_;  // of the trunk's middle from frame to frame, as it walks

@@ -76,7 +76,7 @@ class BodyTracker final : public Tracker {
   void look_at_hands();
   /// Drops those who are gone, and who was taken for somebody by mistake.
   void forget();
-  void track_fingers(Tracked& who, const body::FrameView& frame, const Body::Hands& hands);
+  void track_fingers(Tracked& who, const body::FrameView& frame);
   void publish(const body::FrameView& frame);
 
   bool has_fingers() const { return skeletons_[0] == &kBodyHands; }
@@ -327,14 +327,14 @@ std::span<const Person> BodyTracker::track(const Frame& frame) {
     Body::Hands hands;
     for (std::size_t s = 0; s < 2; ++s)
       if (sight.hands[s]) hands.seen[s] = &hands_[*sight.hands[s]];
-    const Body::Hands own = sight.who->body.track(*sight.frame, *sight.seen, hands, nearer_);
+    sight.who->body.track(*sight.frame, *sight.seen, hands, nearer_);
     nearer_.push_back(&sight.who->body.places());
-    track_fingers(*sight.who, *sight.frame, own);
+    track_fingers(*sight.who, *sight.frame);
   }
   for (Tracked& each : tracked_)
     if (std::ranges::none_of(sights_, [&](const Sight& sight) { return sight.who == &each; })) {
       each.body.miss(view, each.covered);
-      track_fingers(each, view, {});
+      track_fingers(each, view);
     }
   forget();
   publish(view);
@@ -355,12 +355,9 @@ void BodyTracker::forget() {
   });
 }
 
-void BodyTracker::track_fingers(Tracked& who, const body::FrameView& frame, const Body::Hands& hands) {
+void BodyTracker::track_fingers(Tracked& who, const body::FrameView& frame) {
   if (!has_fingers()) return;
-  for (const bool left : {true, false}) {
-    const SeenHand* const hand = who.body.shows_hand(left) ? hands.seen[left ? 0 : 1] : nullptr;
-    who.fingers[left ? 0 : 1].track(frame, hand, who.body.places());
-  }
+  for (const bool left : {true, false}) who.fingers[left ? 0 : 1].track(frame, who.body.shown_hand(left), who.body.places());
 }
 
 void BodyTracker::publish(const body::FrameView& frame) {

@@ -7,8 +7,6 @@ constexpr double kHidden = -2.5, kHiddenButVisible = -1.5, kHiddenButHandSeen = 
                  kHandBehind = -3;
 constexpr double kFreeSpace = -6, kIsTrunk = -7, kUnseen = -2, kInTrunk = -4, kMostOffBack = 2;
 
-constexpr double kBehindPlane = 0.24;  // the back, from the plane of shoulders and hips: of the shoulders' width
-
 /// About ln(share), without a library whose last bits differ from processor to processor.
 double log_share(double share) { return 2 * (share - 1) / (share + 1) * 1.3; }
 
@@ -35,7 +33,8 @@ double inside_trunk_score(const Scene& scene, JointId id, Vec3 p) {
   if (!is_arm(id)) return 0;
   const auto height = scene.map->height_m(scene.trunk, p, scene.width_m());
   if (!height) return 0;
-  const double above = scene.trunk.of(p).z, behind = kBehindPlane * scene.width_m();
+  const Vec3 q = scene.trunk.of(p);
+  const double above = q.z, behind = default_height_m(scene.trunk, q.y, scene.width_m());
   const bool front = dot(scene.trunk.front, scene.trunk.shoulders) < 0;
   return front ? (above < *height && above > -behind ? kInTrunk : 0) : (above > *height && above < behind ? kInTrunk : 0);
 }
@@ -101,17 +100,6 @@ bool is_of_another(const Scene& scene, JointId id, Vec3 skin) {
 }
 
 }  // namespace
-
-std::optional<double> Scene::off_back_m(JointId id, Vec3 p) const {
-  constexpr double kHalfWidths = 0.6, kAbove = 0.1, kBelow = 1.3;  // the back: of the trunk's width and length
-  constexpr double kFacing = 0.7, kArm_m = 0.03;
-  if (!is_hand_or_wrist(id) || sight_of(id) != HandSight::kAbsent) return std::nullopt;
-  if (dot(trunk.front, normalized(trunk.shoulders)) > -kFacing) return std::nullopt;
-  const Vec3 q = trunk.of(p);
-  if (std::abs(q.x) > kHalfWidths * trunk.width_m || q.y < kAbove * trunk.length_m || q.y > kBelow * trunk.length_m || q.z > 0)
-    return std::nullopt;
-  return -q.z - kBehindPlane * width_m() - kArm_m;
-}
 
 double length_score(const Scene& scene, Bone bone, Vec3 a, Vec3 b) {
   constexpr double kLengthSigma_m = 0.025, kMostLength = 6;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "trackers/body/behind_back.h"
 #include "trackers/body/candidates.h"
 
 namespace duo::body {
@@ -116,6 +117,11 @@ LimbChoice choose_limb(const Scene& scene, const Limb& limb, const LimbBones& bo
       for (std::size_t i = 0; i < parents; ++i)
         add_sphere(scene, id, nodes[n - 1].all[i].p, (*scene.lengths)[bones.bones[n]], most, nodes[n]);
     }
+    if (n == 0 || !is_arm(id)) continue;
+    const double from_elbow = (*scene.lengths)[bones.bones[1]] + (n == 2 ? (*scene.lengths)[bones.bones[2]] : 0);
+    for (const Candidate& elbow : nodes[0].get())
+      if (!elbow.hidden())
+        if (const auto p = on_back(scene, limb[2], elbow.p, from_elbow)) add_hidden(scene, id, *p, most, nodes[n]);
   }
   std::array<std::array<double, 24>, 3> best;
   std::array<std::array<std::size_t, 24>, 3> from = {};

@@ -1,6 +1,7 @@
 // Which surfaces carry the joints of a made-up person.
 #include <gtest/gtest.h>
 
+#include "trackers/body/behind_back.h"
 #include "trackers/body/standing.h"
 
 namespace duo::body {
@@ -52,13 +53,14 @@ TEST(BodyChoose, AHandMarkedOnItsForearmBehindTheTrunkIsHidden) {
 }
 
 TEST(BodyChoose, AHandBehindTheTrunkLiesOnTheBack) {
-  // The back is 0.24 widths behind the plane of shoulders and hips, a wrist's centre 3 cm more: 0.1128 m.
+  // 22.5 cm below the shoulders, 0.4891 of the trunk's length, the back is 0.2706 widths behind the plane of shoulders and
+  // hips, and a wrist's centre 3 cm more: 0.1234 m.
   Standing s(standing());
   s.scene.hands[0] = HandSight::kAbsent;
   const auto off = [&](Vec3 p) { return s.scene.off_back_m(kLeftWrist, p); };
   ASSERT_TRUE(off({0.05, -0.2, 2.2}));
-  EXPECT_NEAR(*off({0.05, -0.2, 2.2}), 0.0872, 1e-9);
-  EXPECT_NEAR(*off({0.05, -0.2, 2.05}), -0.0628, 1e-9);
+  EXPECT_NEAR(*off({0.05, -0.2, 2.2}), 0.0766, 1e-4);
+  EXPECT_NEAR(*off({0.05, -0.2, 2.05}), -0.0734, 1e-4);
   EXPECT_FALSE(off({0.05, -0.2, 1.9}));                             // before the trunk
   EXPECT_FALSE(off({0.3, -0.2, 2.2}));                              // beside it
   EXPECT_FALSE(s.scene.off_back_m(kLeftElbow, {0.05, -0.2, 2.2}));  // elbows stand off
@@ -67,6 +69,36 @@ TEST(BodyChoose, AHandBehindTheTrunkLiesOnTheBack) {
   s.scene.hands[0] = HandSight::kAbsent;
   s.scene.trunk.front = {0, 0, 1};  // who shows the back
   EXPECT_FALSE(off({0.05, -0.2, 2.2}));
+}
+
+TEST(BodyChoose, AHandBehindTheTrunkIsAForearmAndAPalmFromItsElbow) {
+  // 23.5 cm below the shoulders the back's depth is 2.1247 m for a wrist, the left elbow is 0.0747 m before it: of the
+  // forearm's 0.238 m 0.2260 m lie along the back, of forearm and palm, 0.306 m, 0.2967 m. The network marks wrist and hand
+  // where the forearm goes in, 10 cm from the elbow, to the middle and down as 2 to 1.
+  constexpr Vec3 kElbow = {0.25, -0.19, 2.05}, kAlong = {-0.894427, 0.447214, 0};
+  const auto on_the_back = [&](double way) { return Vec3{0.25, -0.19, 2.1247} + way * kAlong; };
+  Places places = standing();
+  places[kLeftElbow] = kElbow;
+  Standing s(places);
+  s.scene.hands[0] = HandSight::kAbsent;
+  for (const JointId id : {kLeftWrist, kLeftHand}) {
+    s.scene.points[id].at_px = s.scene.depth.geometry->project(on_the_back(0.1));
+    s.scene.expected[id] = {on_the_back(id == kLeftWrist ? 0.15 : 0.218), 0.2, 10};
+    s.put(id, {{1.9, 1}});  // the trunk
+  }
+  const auto wrist = on_back(s.scene, kLeftWrist, kElbow, 0.238);
+  ASSERT_TRUE(wrist);
+  EXPECT_LT(distance(*wrist, on_the_back(0.2260)), 1e-4);
+  Choices chosen;
+  choose(s.scene, chosen);
+  EXPECT_TRUE(chosen[kLeftElbow].on_surface);
+  EXPECT_LT(distance(chosen[kLeftWrist].p, on_the_back(0.2260)), 0.01);
+  EXPECT_LT(distance(chosen[kLeftHand].p, on_the_back(0.2967)), 0.01);
+
+  EXPECT_FALSE(on_back(s.scene, kLeftWrist, {0.25, -0.19, 1.8}, 0.238));  // 31 cm before the back
+  EXPECT_FALSE(on_back(s.scene, kLeftWrist, {0.45, -0.19, 2.05}, 0.1));   // beside the trunk
+  s.scene.hands[0] = HandSight::kNotAsked;
+  EXPECT_FALSE(on_back(s.scene, kLeftWrist, kElbow, 0.238));
 }
 
 TEST(BodyChoose, InProfileTheFarShoulderIsInferredBehindTheNearOne) {

@@ -10,6 +10,7 @@ namespace {
 constexpr int kSteps = 6;
 constexpr double kCauchy = 2;
 constexpr double kHiddenPoint = 4, kOutsidePoint = 2;  // a point's sigma grows by this
+constexpr double kGoesIn_m = 0.12;                     // from there to a hidden wrist or hand, one standard deviation
 constexpr double kBoneSigma_m = 0.012, kTrunkSigma_m = 0.02;
 
 constexpr std::array<std::size_t, kJoints> free_index() {
@@ -92,7 +93,10 @@ class Terms {
     double sigma = point.sigma_px;
     if (!chosen_[id].on_surface) sigma *= kHiddenPoint;
     if (!point.inside) sigma *= kOutsidePoint;
-    const double z = std::max(p.z, 0.2), f = g.focal_px / (z * sigma);
+    const double z = std::max(p.z, 0.2);
+    // Of an arm behind the back the mark shows where it goes in.
+    if (!chosen_[id].on_surface && scene_.off_back_m(id, p)) sigma = std::max(sigma, kGoesIn_m * g.focal_px / z);
+    const double f = g.focal_px / (z * sigma);
     const double rx = (g.focal_px * p.x / z + g.cx_px - point.at_px.x) / sigma;
     const double ry = (g.focal_px * p.y / z + g.cy_px - point.at_px.y) / sigma;
     const double weight = 1 / (1 + (square(rx) + square(ry)) / square(kCauchy));

@@ -30,6 +30,12 @@ TrunkAxes trunk_axes(const Places& joints) {
   return out;
 }
 
+double default_height_m(const TrunkAxes& axes, double down_m, double width_m) {
+  constexpr double kShoulderDepth = 0.185, kHipDepth = 0.36;  // of the shoulders' width
+  const double t = std::clamp(down_m / axes.length_m, 0.0, 1.0);
+  return width_m * (kShoulderDepth + t * (kHipDepth - kShoulderDepth));
+}
+
 std::optional<std::size_t> SurfaceMap::cell_of(const TrunkAxes& axes, Vec3 in_trunk) {
   const double u = (in_trunk.x / axes.width_m + kHalfWidths) / (2 * kHalfWidths);
   const double v = (in_trunk.y / axes.length_m + kAbove) / (kAbove + kBelow);
@@ -38,7 +44,6 @@ std::optional<std::size_t> SurfaceMap::cell_of(const TrunkAxes& axes, Vec3 in_tr
 }
 
 std::optional<double> SurfaceMap::height_m(const TrunkAxes& axes, Vec3 p, double width_m) const {
-  constexpr double kShoulderDepth = 0.185, kHipDepth = 0.36;  // of the shoulders' width
   constexpr int kEnough = 3;
   const Vec3 q = axes.of(p);
   const auto cell = cell_of(axes, q);
@@ -47,8 +52,7 @@ std::optional<double> SurfaceMap::height_m(const TrunkAxes& axes, Vec3 p, double
   const Cell& found = sides_[front ? 0 : 1][*cell];
   if (found.count >= kEnough) return found.height_m;
   if (std::abs(q.x) > 0.5 * axes.width_m) return std::nullopt;
-  const double t = std::clamp(q.y / axes.length_m, 0.0, 1.0);
-  const double height = width_m * (kShoulderDepth + t * (kHipDepth - kShoulderDepth));
+  const double height = default_height_m(axes, q.y, width_m);
   return front ? height : -height;
 }
 

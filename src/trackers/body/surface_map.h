@@ -26,6 +26,9 @@ struct TrunkAxes {
 };
 TrunkAxes trunk_axes(const Places& joints);
 
+/// How far chest and back of an adult lie from the plane, `down_m` below the shoulders.
+double default_height_m(const TrunkAxes& axes, double down_m, double width_m);
+
 /// One map for the chest and one for the back. Cells in shares of the trunk's width and length, so that they go along with it.
 class SurfaceMap {
  public:
