@@ -1,5 +1,7 @@
 #include "trackers/body/behind_back.h"
 
+#include <algorithm>
+
 #include "trackers/body/candidates.h"
 
 namespace duo::body {
@@ -18,6 +20,22 @@ std::optional<double> Scene::off_back_m(JointId id, Vec3 p) const {
   if (std::abs(q.x) > kHalfWidths * trunk.width_m || q.y < kAbove * trunk.length_m || q.y > kBelow * trunk.length_m || q.z > 0)
     return std::nullopt;
   return -q.z - default_height_m(trunk, q.y, width_m()) - kHalfWrist_m;
+}
+
+void leave_upper_arm(Scene& scene, const Limb& arm) {
+  constexpr double kHalfUpperArm_m = 0.05;
+  if (!scene.off_back_m(arm[2], scene.expected[arm[2]].p)) return;
+  const auto marked = [&](std::size_t i) { return scene.points[arm[i]].at_px; };
+  const double near_px = kHalfUpperArm_m * scene.depth.px_per_m(std::max(scene.expected[arm[1]].p.z, kAnyDepth.near_m));
+  if (to_segment(marked(2), marked(0), marked(1)) > near_px) return;
+  const View<const std::uint16_t> map = scene.depth.d_q4;
+  for (const JointId id : {arm[2], arm[3]}) {
+    const Vec3 p = scene.expected[id].p;
+    const Vec2 at = scene.depth.geometry->project({p.x, p.y, std::max(p.z, kAnyDepth.near_m)});
+    scene.points[id].at_px = at;
+    scene.points[id].inside = at.x >= 0 && at.y >= 0 && at.x <= map.width() - 1 && at.y <= map.height() - 1;
+    scene.points[id].hide();
+  }
 }
 
 std::optional<Vec3> on_back(const Scene& scene, JointId wrist, Vec3 elbow, double length) {

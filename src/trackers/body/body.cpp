@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "trackers/body/behind_back.h"
 #include "trackers/body/imagined.h"
 
 namespace duo::body {
@@ -166,6 +167,7 @@ void Body::detect(const FrameView& frame, const SeenBody& seen, const Hands& han
   Places expected = fitted_.places;
   for (const JointId id : kFreeJoints) expected[id] = scene.expected[id].p;
   scene.trunk = trunk_axes(expected);
+  for (const Limb& arm : kArmChains) leave_upper_arm(scene, arm);
 }
 
 void Body::detect_hand(const FrameView& frame, const SeenHand* hand, bool left, Scene& scene) {

@@ -107,6 +107,32 @@ TEST(BodyChoose, AHandBehindTheTrunkIsAForearmAndAPalmFromItsElbow) {
   EXPECT_FALSE(on_back(s.scene, kLeftWrist, kElbow, 0.238));
 }
 
+TEST(BodyChoose, AWristBehindTheTrunkIsNotMarkedOnItsUpperArm) {
+  // The left wrist was behind the trunk in the last frame. Its mark lies in the middle of the upper arm, 5 cm thick to each
+  // side, or 6 cm beside.
+  const Places places = standing();
+  const Vec3 upper_arm = middle(places[kLeftShoulder], places[kLeftElbow]), last = {0.05, -0.1, 2.12};
+  const auto marked = [&](Vec3 mark, Vec3 expected, HandSight sight) {
+    Standing s(places);
+    s.scene.hands[0] = sight;
+    s.scene.expected[kLeftWrist].p = expected;
+    s.scene.points[kLeftWrist].at_px = s.scene.depth.geometry->project(mark);
+    leave_upper_arm(s.scene, kArmChains[0]);
+    return s.scene.points[kLeftWrist];
+  };
+  const Rectified camera = geometry();
+  const Point left = marked(upper_arm, last, HandSight::kAbsent);
+  EXPECT_LT(distance(left.at_px, camera.project(last)), 1e-9);
+  EXPECT_LE(left.visibility, 0.1);
+  EXPECT_TRUE(left.inside);
+  const auto stays = [&](Vec3 mark, Vec3 expected, HandSight sight) {
+    EXPECT_LT(distance(marked(mark, expected, sight).at_px, camera.project(mark)), 1e-9);
+  };
+  stays(upper_arm + Vec3{0.06, 0, 0}, last, HandSight::kAbsent);
+  stays(upper_arm, {0.05, -0.1, 1.8}, HandSight::kAbsent);  // before the trunk
+  stays(upper_arm, last, HandSight::kSeen);
+}
+
 TEST(BodyChoose, InProfileTheFarShoulderIsInferredBehindTheNearOne) {
   // Turned by 90 degrees: the left side is near, and both shoulders are marked on it.
   Places places = standing();

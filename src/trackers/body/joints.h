@@ -67,6 +67,12 @@ constexpr double square(double x) { return x * x; }
 inline double distance(Vec3 a, Vec3 b) { return norm(a - b); }
 inline double distance(Vec2 a, Vec2 b) { return std::sqrt(square(a.x - b.x) + square(a.y - b.y)); }
 /// From a point to the nearest one between a and b.
+inline double to_segment(Vec2 p, Vec2 a, Vec2 b) {
+  const Vec2 way = {b.x - a.x, b.y - a.y};
+  const double along = (p.x - a.x) * way.x + (p.y - a.y) * way.y;
+  const double t = std::clamp(along / std::max(square(way.x) + square(way.y), 1e-9), 0.0, 1.0);
+  return distance(p, {a.x + t * way.x, a.y + t * way.y});
+}
 inline double to_segment(Vec3 p, Vec3 a, Vec3 b) {
   const Vec3 way = b - a;
   const double t = std::clamp(dot(p - a, way) / std::max(dot(way, way), 1e-9), 0.0, 1.0);
