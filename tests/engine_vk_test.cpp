@@ -134,6 +134,25 @@ TEST(VulkanEngine, SettlesWhatIsClear) {
   }
 }
 
+// Noise of coding belongs to its pair, also while another one is in flight.
+TEST(VulkanEngine, TakesTheCodingNoiseOfEachPair) {
+  std::vector<Pair> pairs;
+  for (unsigned i = 0; i < 3; ++i) pairs.push_back(low_texture(false, i));
+  pairs[0].left.jpeg = test::coded_by(16);
+  pairs[2].right.jpeg = test::coded_by(24);
+  duo::Setup setup;
+  setup.size = pairs[0].left.pixels.size();
+  setup.max_disparity = 16;
+  OwnDevice device;
+  const auto reference = prepared(make_ref_engine(), setup), vulkan = prepared(device.engine(), setup);
+  vulkan->submit(pairs[0]);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (i + 1 < pairs.size()) vulkan->submit(pairs[i + 1]);
+    const auto want = run(*reference, pairs[i])->disparity.d_q4.clone();
+    test::expect_same<std::uint16_t>(want, vulkan->collect()->disparity.d_q4, "pair " + std::to_string(i));
+  }
+}
+
 // Windows belong to the pair submitted after them, also while another one is in flight.
 TEST(VulkanEngine, CutsTheWindowsOfEachPair) {
   const SyntheticPair scenes[] = {room(), room(5)};

@@ -1,8 +1,11 @@
 #include "engines/prepared.h"
 
 #include "calib/row_offsets.h"
+#include "sources/picture_bytes.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace duo {
 namespace {
@@ -60,6 +63,14 @@ Result<Prepared> prepare_setup(const Setup& setup) {
 MatchSetup match_setup(const Prepared& prepared) {
   return {prepared.size, prepared.setup.max_disparity, prepared.rectification.has_value(), prepared.stream,
           prepared.setup.progress};
+}
+
+int coding_noise_q4(const Prepared& prepared, const Pair& pair) {
+  if (prepared.median || prepared.gaussian || prepared.diffusion) return 0;
+  const auto of = [](const Picture& picture) {
+    return duo::coding_noise_q4({reinterpret_cast<const char*>(picture.jpeg.data()), picture.jpeg.size()});
+  };
+  return std::max(of(pair.left), of(pair.right));
 }
 
 float focal_baseline_px_mm(const Rectified& geometry) {

@@ -6,6 +6,7 @@
 
 #include "calib/rectification.h"
 #include "duoptic/engine.h"
+#include "duoptic/frame.h"
 #include "matchers/matchers.h"
 
 namespace duo {
@@ -29,6 +30,10 @@ struct Prepared {
 Result<Prepared> prepare_setup(const Setup& setup);
 
 MatchSetup match_setup(const Prepared& prepared);
+
+/// What coding left in the noisier picture, by its JPEG; 0 where that is not known, and where pictures are denoised, which
+/// smooths it, too.
+int coding_noise_q4(const Prepared& prepared, const Pair& pair);
 
 /// The numerator of depth: focal_px * baseline_mm.
 float focal_baseline_px_mm(const Rectified& geometry);

@@ -66,6 +66,7 @@ class RefEngine final : public Engine {
 
     Disparity& disparity = frame.disparity;
     GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside};
+    gray.coding_noise_q4 = coding_noise_q4(prepared_, pair);
     if (prepared_.color) prepare_color(pair.left, maps != nullptr ? &maps->left : nullptr, frame.color);
     timer_.stage("color");
     if (prepared_.match_color) {

@@ -46,6 +46,7 @@ void SimdFrames::make(const Pair& pair, std::span<const Window> windows, const F
   Disparity& disparity = frame.disparity;
   const bool whole = prepared_.match_color || focus.window.within(prepared_.size).empty();
   GrayPair gray{frame.left, frame.right, frame.left_inside, frame.right_inside, turn};
+  gray.coding_noise_q4 = coding_noise_q4(prepared_, pair);
   if (whole) {
     frame.matched = {};
     // What fills a hole may come from anywhere in the picture.

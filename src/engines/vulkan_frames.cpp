@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "core/check.h"
 #include "core/clock.h"
@@ -120,6 +121,7 @@ Result<void> Frames::make_slot(Slot& slot) {
   slot.recorder.emplace(std::move(recorder));
   DUO_TRY_ASSIGN(slot.timer, Timer::make(device_, kMostParts));
   for (Buffer& raw : slot.raw) DUO_TRY(make_map<Rgb8>(device_, "pictures up", prepared_.setup.size, raw, Memory::kUpload));
+  DUO_TRY_ASSIGN(slot.coding_noise_q4, Buffer::make(device_, "coding noise up", sizeof(std::int32_t), Memory::kUpload));
   const auto make = [&]<class T>(T, bool wanted, const char* name, Buffer& out) -> Result<void> {
     return wanted ? make_map<T>(device_, name, size, out, Memory::kDownload) : Result<void>{};
   };
@@ -176,7 +178,7 @@ std::array<BufferView<std::uint8_t>, 2> Frames::record_views(Slot& slot) {
   return now;
 }
 
-void Frames::record_match(Recorder& recorder, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right,
+void Frames::record_match(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right,
                           BufferView<std::uint16_t> d_q4) const {
   BufferView<std::uint8_t> left_inside, right_inside, confidence;
   if (rectifies()) {
@@ -184,15 +186,15 @@ void Frames::record_match(Recorder& recorder, BufferView<std::uint8_t> left, Buf
     right_inside = whole<std::uint8_t>(views_[1].inside, prepared_.size);
   }
   if (prepared_.setup.wants.confidence) confidence = whole<std::uint8_t>(confidence_, prepared_.size);
-  const MatchInput pair{left, right, left_inside, right_inside};
-  std::visit([&](const auto& matcher) { matcher.record(recorder, pair, {d_q4, confidence}); }, *matcher_);
+  const MatchInput pair{left, right, left_inside, right_inside, &slot.coding_noise_q4};
+  std::visit([&](const auto& matcher) { matcher.record(*slot.recorder, pair, {d_q4, confidence}); }, *matcher_);
 }
 
 void Frames::record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right) {
   Recorder& recorder = *slot.recorder;
   const Size size = prepared_.size;
   const auto d_q4 = whole<std::uint16_t>(maps_of(slot).d_q4, size);
-  record_match(recorder, left, right, d_q4);
+  record_match(slot, left, right, d_q4);
   fill_.record_measured(recorder, d_q4, whole<std::uint8_t>(origin_, size), size);
   recorder.stage("fill");
   if (depth_) {
@@ -237,6 +239,8 @@ Result<void> Frames::submit(int slot, const Pair& pair) {
   Slot& at = slots_[static_cast<std::size_t>(slot)];
   pack(pair.left.pixels, at.raw[0]);
   pack(pair.right.pixels, at.raw[1]);
+  const std::int32_t noise_q4 = coding_noise_q4(prepared_, pair);
+  std::memcpy(at.coding_noise_q4.mapped().data(), &noise_q4, sizeof noise_q4);
   DUO_TRY_ASSIGN(at.ticket, at.recorder->submit());
   return {};
 }

@@ -56,6 +56,7 @@ class Frames {
   };
   struct Slot {
     std::array<Buffer, 2> raw;
+    Buffer coding_noise_q4;  // one word
     struct {
       Buffer left, right, d_q4, origin, confidence, depth_mm, color;  // empty where not wanted
     } down;
@@ -73,7 +74,7 @@ class Frames {
   /// Where the maps of a slot's frame go.
   const FrameMaps::Slot& maps_of(const Slot& slot) const;
   std::array<BufferView<std::uint8_t>, 2> record_views(Slot& slot);
-  void record_match(Recorder& recorder, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right,
+  void record_match(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right,
                     BufferView<std::uint16_t> d_q4) const;
   void record_depth(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right);
   void record_downloads(Slot& slot, BufferView<std::uint8_t> left, BufferView<std::uint8_t> right);

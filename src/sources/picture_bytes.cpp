@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <set>
@@ -272,6 +273,28 @@ std::optional<ViewLayout> layout_of_jps(std::string_view bytes, bool named_jps) 
     if (byte_of(block, 4) == kAbove) return left_first ? ViewLayout::kTopBottom : ViewLayout::kBottomTop;
   }
   return named_jps ? std::optional(ViewLayout::kRightLeft) : std::nullopt;
+}
+
+int coding_noise_q4(std::string_view bytes) {
+  constexpr std::uint8_t kTables = 0xdb;
+  constexpr std::size_t kLowest = 10;
+  std::size_t squares = 0;
+  if (!is_jpeg(bytes)) return 0;
+  walk_jpeg(bytes, [&](std::uint8_t marker, std::string_view content) {
+    while (marker == kTables && !content.empty()) {
+      const std::size_t each = byte_of(content, 0) >> 4 != 0 ? 2 : 1, length = 1 + 64 * each;
+      const bool of_brightness = (byte_of(content, 0) & 15) == 0;
+      if (content.size() < length) return true;
+      if (of_brightness) squares = 0;
+      for (std::size_t i = 0; of_brightness && i < kLowest; ++i) {
+        const std::size_t step = number_at(content, 1 + each * i, each, false);
+        squares += step * step;
+      }
+      content.remove_prefix(length);
+    }
+    return marker == kScan;
+  });
+  return static_cast<int>(std::lround(16 * std::sqrt(static_cast<double>(squares) / (12 * 64))));
 }
 
 std::string unsupported_in(std::string_view bytes) {

@@ -34,6 +34,15 @@ Orientation orientation_of(std::string_view bytes);
 /// The layout that a JPS says in its marker; by the format's habit the right view comes first.
 std::optional<ViewLayout> layout_of_jps(std::string_view bytes, bool named_jps);
 
+/// Standard deviation of what rounding a JPEG's coefficients of brightness adds to each pixel, in 1/16 gray levels; 0 where
+/// `bytes` are none, or have no table of steps before their first scan.
+///
+/// A coefficient that is rounded to multiples of q is off by q / sqrt(12) in the mean, and a pixel is the sum of 64 of them,
+/// each over 8. The ten lowest count: most of the others are zero before and after.
+///
+/// Source   ITU-T T.81, A.3.4 (rounding), B.2.4.1 (table)
+int coding_noise_q4(std::string_view bytes);
+
 /// "" or what the picture has that is not read: an unsupported kind is not a damaged file.
 std::string unsupported_in(std::string_view bytes);
 

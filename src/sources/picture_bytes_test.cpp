@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/coded_picture.h"
 #include "tests/write_media.h"
 
 namespace duo {
@@ -53,6 +54,45 @@ Image<Rgb8> read(const std::filesystem::path& path) {
   EXPECT_TRUE((*source)->next(picture));
   EXPECT_EQ(picture.pixels.size(), (*source)->size());
   return std::move(picture.pixels);
+}
+
+// Ten steps of 16: 16 sqrt(10 * 256 / 768) = 29.2. Of the others, and of the colours, none counts.
+TEST(CodingNoise, ByHand) {
+  const auto tables = [](const std::string& content) {
+    return "\xff\xd8\xff\xdb"s + big(static_cast<unsigned>(content.size()) + 2, 2) + content;
+  };
+  const std::string steps = std::string(10, '\x10') + std::string(54, '\xc8'), fine(64, '\x01');
+  EXPECT_EQ(coding_noise_q4(tables("\0"s + steps)), 29);
+  EXPECT_EQ(coding_noise_q4(tables("\0"s + steps + "\1"s + fine)), 29);
+  EXPECT_EQ(coding_noise_q4(tables("\1"s + fine + "\0"s + steps)), 29);
+  EXPECT_EQ(coding_noise_q4(tables("\1"s + steps)), 0);
+  EXPECT_EQ(coding_noise_q4(tables("\0"s + fine)), 2);  // 16 sqrt(10 / 768) = 1.8
+  std::string wide = "\x10"s;
+  for (int i = 0; i < 64; ++i) wide += big(300, 2);  // 16 sqrt(10 * 90000 / 768) = 547.7
+  EXPECT_EQ(coding_noise_q4(tables(wide)), 548);
+  EXPECT_EQ(coding_noise_q4(tables("\0"s + steps).substr(0, 40)), 0);
+  EXPECT_EQ(coding_noise_q4(tables("\0"s + steps.substr(1))), 0);
+  EXPECT_EQ(coding_noise_q4("\x89PNG"), 0);
+  EXPECT_EQ(coding_noise_q4(""), 0);
+}
+
+TEST(CodingNoise, ComesWithThePicture) {
+  const TempFolder dir;
+  Image<Rgb8> gray({32, 32});
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) gray.at(y, x) = {128, 128, 128};
+  const std::string half = jpeg_of(gray.view(), 50);  // 16 11 12 14 12 10 16 14 13 14: 16 sqrt(1778 / 768) = 24.3
+  put(dir / "half.jpg", half);
+  put(dir / "half.mjpeg", half + half);
+  put(dir / "whole.png", png_of(View<const Rgb8>(gray.view())));
+  for (const auto& [name, noise_q4] : {std::pair("half.jpg", 24), {"half.mjpeg", 24}, {"whole.png", 0}}) {
+    const auto source = open_source(dir / name);
+    ASSERT_TRUE(source) << source.error().what;
+    Picture picture;
+    picture.jpeg = {1, 2};
+    ASSERT_TRUE((*source)->next(picture));
+    EXPECT_EQ(coding_noise_q4({reinterpret_cast<const char*>(picture.jpeg.data()), picture.jpeg.size()}), noise_q4) << name;
+  }
 }
 
 TEST(Orientation, EachOfEightByHand) {

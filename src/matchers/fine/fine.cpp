@@ -30,6 +30,7 @@ GrayPair MirroredPair::of(const GrayPair& pair) {
   out.right_inside = mirrored(pair.left_inside, right_inside_);
   out.left_color = mirrored(pair.right_color, left_color_);
   out.right_color = mirrored(pair.left_color, right_color_);
+  out.coding_noise_q4 = pair.coding_noise_q4;
   return out;
 }
 

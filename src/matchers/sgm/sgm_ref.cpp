@@ -1,5 +1,7 @@
 #include "matchers/sgm/sgm.h"
 
+#include <algorithm>
+
 #include "stages/balance/balance.h"
 #include "stages/bilateral/bilateral.h"
 #include "stages/blur/blur.h"
@@ -26,7 +28,7 @@ void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, std::
 }
 
 Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear) {
-  const int noise_q4 = ref::noise_q4(pair.left, pair.right);
+  const int noise_q4 = std::max(ref::noise_q4(pair.left, pair.right), noise_of_coding_q4(pair.coding_noise_q4));
   timer.stage("noise");
   clear_ = clear ? *clear : stream_->next(pair.turn, looks_clear(params_, noise_q4, ref::blur_q4(pair.left, pair.right)));
   timer.stage("blur");

@@ -36,7 +36,7 @@ void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBa
 }
 
 Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear) {
-  const int noise_q4 = simd::noise_q4(pool_, pair.left, pair.right);
+  const int noise_q4 = std::max(simd::noise_q4(pool_, pair.left, pair.right), noise_of_coding_q4(pair.coding_noise_q4));
   timer.stage("noise");
   clear_ =
       clear ? *clear : stream_->next(pair.turn, looks_clear(params_, noise_q4, simd::blur_q4(pool_, pair.left, pair.right)));

@@ -12,10 +12,14 @@ namespace {
 /// A textured wall at 4 px with a box at 12 px in front of its middle third; the right camera is darker and has less contrast.
 struct BoxScene {
   Image<std::uint8_t> left, right;
-  explicit BoxScene(Size size) : left(size), right(size) {
+  /// `levels`: of the texture; three are no noise.
+  explicit BoxScene(Size size, int levels = 256) : left(size), right(size) {
     std::mt19937 rng(21);
     Image<std::uint8_t> texture({size.width + 64, size.height});
     test::fill(texture.view(), test::Fill::kRandom, rng);
+    for (int y = 0; y < texture.height(); ++y)
+      for (int x = 0; x < texture.width(); ++x)
+        if (levels < 256) texture.at(y, x) = static_cast<std::uint8_t>(100 + texture.at(y, x) % levels);
     for (int y = 0; y < size.height; ++y)
       for (int x = 0; x < size.width; ++x) {
         left.at(y, x) = texture.at(y, x);
@@ -25,12 +29,13 @@ struct BoxScene {
   }
 };
 
-void expect_engines_agree(Size size, int max_disparity, int paths, bool masked, int clear = 1) {
-  const BoxScene scene(size);
+void expect_engines_agree(Size size, int max_disparity, int paths, bool masked, int clear = 1, int coding_noise_q4 = 0) {
+  const BoxScene scene(size, coding_noise_q4 > 0 ? 3 : 256);
   const SgmParams params = *sgm_params("default", {{"paths", paths}, {"clear", clear}, {"refine", masked}});
   Image<std::uint8_t> inside = test::constant<std::uint8_t>(size, 255);
   for (int y = 0; y < size.height; ++y) inside.at(y, 0) = 0;
   GrayPair pair{scene.left, scene.right};
+  pair.coding_noise_q4 = coding_noise_q4;
   if (masked) pair.left_inside = inside, pair.right_inside = inside;
   const MatchSetup setup{size, max_disparity, masked};
   StageTimer timer;
@@ -50,6 +55,38 @@ void expect_engines_agree(Size size, int max_disparity, int paths, bool masked, 
       }
     }
   });
+}
+
+// By hand (stages/types/noise.h): of 15 sixteenths of coding noise 15 (15 - 10) / 10 = 7.5 count, of 24 all, of 10 nothing. The
+// picture's own noise counts where it is more; noise of either kind is not clear.
+TEST(Sgm, NoiseIsAtLeastThatOfTheCoding) {
+  const Size size{64, 40};
+  Image<std::uint8_t> fine(size), noisy(size);
+  std::mt19937 rng(5);
+  test::fill(noisy.view(), test::Fill::kRandom, rng);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x)
+      fine.at(y, x) = static_cast<std::uint8_t>(100 + x + y),
+                 noisy.at(y, x) = static_cast<std::uint8_t>(noisy.at(y, x) / 2 + 50);
+  const SgmParams params = *sgm_params("default", {});
+  StageTimer timer;
+  Pool pool(1);
+  const auto measured = [&](const Image<std::uint8_t>& picture, int coding_noise_q4) {
+    GrayPair pair{picture, picture};
+    pair.coding_noise_q4 = coding_noise_q4;
+    const Measured of_ref = ref::Sgm(params, {size, 16, false}).measure(pair, timer);
+    const Measured of_simd = simd::Sgm(pool, params, {size, 16, false}).measure(pair, timer);
+    EXPECT_EQ(of_ref.noise_q4, of_simd.noise_q4);
+    EXPECT_EQ(of_ref.clear, of_simd.clear);
+    return std::pair(of_ref.noise_q4, of_ref.clear);
+  };
+  EXPECT_EQ(measured(fine, 0).first, 0);
+  EXPECT_EQ(measured(fine, 10), measured(fine, 0));
+  EXPECT_EQ(measured(fine, 15), std::pair(7, false));
+  EXPECT_EQ(measured(fine, 24), std::pair(24, false));
+  const int own = measured(noisy, 0).first;
+  EXPECT_GT(own, 40);
+  EXPECT_EQ(measured(noisy, 40).first, own);
 }
 
 // By hand: of 100, where nothing changes 100; beside a step of a pixel 1600 / 32 = 50; beside one of five pixels, of which
@@ -90,6 +127,7 @@ TEST(Sgm, EnginesAgree) {
     }
   expect_engines_agree({33, 17}, 70, 3, true);
   for (const int clear : {0, 2}) expect_engines_agree({90, 30}, 20, 3, true, clear);
+  for (const int coding_noise_q4 : {24, 70}) expect_engines_agree({90, 30}, 20, 3, true, 1, coding_noise_q4);
   // Vectors that are all used, behind one that holds nothing.
   for (const int paths : {3, 8})
     for (const int max_disparity : {16, 32, 48, 96}) expect_engines_agree({70, 12}, max_disparity, paths, false);

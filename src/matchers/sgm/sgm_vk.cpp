@@ -40,7 +40,7 @@ Result<Sgm> Sgm::make(Device& device, const SgmParams& params, const MatchSetup&
   DUO_TRY_ASSIGN(out.lucas_kanade_, LucasKanade::make(device));
   DUO_TRY_ASSIGN(out.keep_confidence_,
                  Kernel::make(device, {"keep confidence", kKeepConfidenceCode, 2, sizeof(KeepConfidencePush)}));
-  DUO_TRY_ASSIGN(out.settle_clear_, Kernel::make(device, {"settle clear", kSettleClearCode, 3, sizeof(SettleClearPush)}));
+  DUO_TRY_ASSIGN(out.settle_clear_, Kernel::make(device, {"settle clear", kSettleClearCode, 4, sizeof(SettleClearPush)}));
   return out;
 }
 
@@ -56,7 +56,8 @@ Result<Sgm::Maps> Sgm::make_maps(Device& device, const SgmParams& params, const 
   DUO_TRY_ASSIGN(out.balanced, make_map<std::uint8_t>(device, "balanced", size));
   DUO_TRY_ASSIGN(out.noise_q4, Buffer::make(device, "sgm noise", sizeof(std::uint32_t), Memory::kDevice));
   DUO_TRY_ASSIGN(out.blur_q4, Buffer::make(device, "sgm blur", sizeof(std::uint32_t), Memory::kDevice));
-  const std::int32_t before_the_first = 0;
+  const std::int32_t before_the_first = 0, no_noise = 0;
+  DUO_TRY_ASSIGN(out.not_coded, make_filled(device, "sgm not coded", std::as_bytes(std::span(&no_noise, 1))));
   DUO_TRY_ASSIGN(out.stream, make_filled(device, "sgm stream", std::as_bytes(std::span(&before_the_first, 1))));
   DUO_TRY_ASSIGN(out.soft_left, make_map<std::uint8_t>(device, "soft left", size));
   DUO_TRY_ASSIGN(out.soft_right, make_map<std::uint8_t>(device, "soft right", size));
@@ -104,8 +105,9 @@ void Sgm::record_winners(Recorder& recorder, const Input& pair, BufferView<std::
   noise_.record(recorder, pair.left, pair.right, maps_.noise, maps_.noise_q4, size);
   recorder.stage("noise");
   blur_.record(recorder, pair.left, pair.right, maps_.blur, maps_.blur_q4, size);
+  const Buffer& coding_noise_q4 = pair.coding_noise_q4 != nullptr ? *pair.coding_noise_q4 : maps_.not_coded;
   recorder.dispatch(settle_clear_, SettleClearPush{params_.soften, params_.clear},
-                    {writes(maps_.noise_q4), reads(maps_.blur_q4), writes(maps_.stream)}, {1, 1});
+                    {writes(maps_.noise_q4), reads(maps_.blur_q4), reads(coding_noise_q4), writes(maps_.stream)}, {1, 1});
   recorder.stage("blur");
   balance_.record(recorder, {pair.left, pair.right, pair.left_inside, pair.right_inside}, setup_.max_disparity, &maps_.stream,
                   maps_.balance, balanced, size);

@@ -30,8 +30,8 @@ class Sgm {
  private:
   /// The maps between the stages, and the stages' own memory.
   struct Maps {
-    Buffer balanced, noise_q4, blur_q4, stream, soft_left, soft_right, left_planes, right_planes, left_winner, right_winner,
-        fine, checked;
+    Buffer balanced, noise_q4, blur_q4, not_coded, stream, soft_left, soft_right, left_planes, right_planes, left_winner,
+        right_winner, fine, checked;
     Balance::Scratch balance;
     Noise::Scratch noise;
     Blur::Scratch blur;

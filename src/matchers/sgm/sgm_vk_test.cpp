@@ -13,10 +13,14 @@ using test::OnDevice;
 /// and its last columns lie outside.
 struct DarkerScene {
   Image<std::uint8_t> left, right, left_inside, right_inside;
-  DarkerScene(Size size, unsigned seed) : left(size), right(size), left_inside(size), right_inside(size) {
+  /// `levels`: of the texture; three are no noise.
+  DarkerScene(Size size, unsigned seed, int levels = 256) : left(size), right(size), left_inside(size), right_inside(size) {
     std::mt19937 rng(seed);
     Image<std::uint8_t> texture({size.width + 64, size.height});
     test::fill(texture.view(), test::Fill::kRandom, rng);
+    for (int y = 0; y < texture.height(); ++y)
+      for (int x = 0; x < texture.width(); ++x)
+        if (levels < 256) texture.at(y, x) = static_cast<std::uint8_t>(100 + texture.at(y, x) % levels);
     for (int y = 0; y < size.height; ++y)
       for (int x = 0; x < size.width; ++x) {
         left.at(y, x) = texture.at(y, x);
@@ -30,14 +34,16 @@ struct DarkerScene {
 
 /// Two scenes with the same memory: the second must not see anything of the first.
 void expect_sgm_agrees(vk::Device& device, const SgmParams& params, const MatchSetup& setup, bool wants_confidence,
-                       const std::string& where) {
+                       const std::string& where, int coding_noise_q4 = 0) {
+  const auto coding = must(vk::make_filled(device, "coding", std::as_bytes(std::span(&coding_noise_q4, 1))));
   const auto matcher = must(vk::Sgm::make(device, params, setup));
   ref::Sgm reference(params, setup);
   StageTimer timer;
   auto recorder = must(vk::Recorder::make(device));
   for (const unsigned seed : {21U, 22U}) {
-    const DarkerScene scene(setup.size, seed);
+    const DarkerScene scene(setup.size, seed, coding_noise_q4 != 0 ? 3 : 256);
     GrayPair pair{scene.left, scene.right};
+    pair.coding_noise_q4 = coding_noise_q4;
     if (setup.masked) pair.left_inside = scene.left_inside, pair.right_inside = scene.right_inside;
     Image<std::uint16_t> want(setup.size);
     Image<std::uint8_t> sure(setup.size);
@@ -48,6 +54,7 @@ void expect_sgm_agrees(vk::Device& device, const SgmParams& params, const MatchS
         right_inside(device, scene.right_inside, "right inside"), confidence(device, setup.size, "confidence");
     const OnDevice<std::uint16_t> d_q4(device, setup.size, "d_q4");
     vk::Sgm::Input input{left.view(), right.view()};
+    if (coding_noise_q4 != 0) input.coding_noise_q4 = &coding;
     if (setup.masked) input.left_inside = left_inside.view(), input.right_inside = right_inside.view();
     vk::Sgm::Output out{d_q4.view()};
     if (wants_confidence) out.confidence = confidence.view();
@@ -83,6 +90,13 @@ TEST(SgmVk, AgreesOnClearPictures) {
   test::each_device([](vk::Device& device, const std::string& where) {
     for (const int clear : {0, 2})
       expect_sgm_agrees(device, *sgm_params("default", {{"clear", clear}, {"refine", 1}}), {{61, 24}, 16, true}, true, where);
+  });
+}
+
+TEST(SgmVk, AgreesOnCodedPictures) {
+  test::each_device([](vk::Device& device, const std::string& where) {
+    for (const int coding_noise_q4 : {24, 70})
+      expect_sgm_agrees(device, *sgm_params("default", {{"refine", 1}}), {{61, 24}, 16, true}, true, where, coding_noise_q4);
   });
 }
 

@@ -26,6 +26,15 @@ DUO_INLINE int noise_of_bin_q4(int bin) {
   return sigma < most ? sigma : most;
 }
 
+// What counts of a JPEG's coding, sigma in 1/16 gray levels (sources/picture_bytes.h): nothing of fine coding, all from 1 1/4
+// levels on. Coding flattens quiet blocks, so that the noise that is measured of them says nothing of it.
+DUO_INLINE int noise_of_coding_q4(int sigma) {
+  const int least = 10, full = 20, most = 256;
+  if (sigma <= least) return 0;
+  if (sigma < full) return sigma * (sigma - least) / (full - least);
+  return sigma < most ? sigma : most;
+}
+
 // Neighbours on one surface are nearly all within six sigmas. At most 96.
 DUO_INLINE int bilateral_range(int noise_q4) { return (6 * noise_q4 + 8) >> 4; }
 
