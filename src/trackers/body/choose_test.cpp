@@ -75,10 +75,10 @@ TEST(BodyChoose, AHandBehindTheTrunkIsAForearmAndAPalmFromItsElbow) {
   // 23.5 cm below the shoulders the back's depth is 2.1247 m for a wrist, the left elbow is 0.0747 m before it: of the
   // forearm's 0.238 m 0.2260 m lie along the back, of forearm and palm, 0.306 m, 0.2967 m. The network marks wrist and hand
   // where the forearm goes in, 10 cm from the elbow, to the middle and down as 2 to 1.
-  constexpr Vec3 kElbow = {0.25, -0.19, 2.05}, kAlong = {-0.894427, 0.447214, 0};
-  const auto on_the_back = [&](double way) { return Vec3{0.25, -0.19, 2.1247} + way * kAlong; };
+  const Vec3 elbow = {0.25, -0.19, 2.05}, along = {-0.894427, 0.447214, 0};
+  const auto on_the_back = [&](double way) { return Vec3{0.25, -0.19, 2.1247} + way * along; };
   Places places = standing();
-  places[kLeftElbow] = kElbow;
+  places[kLeftElbow] = elbow;
   Standing s(places);
   s.scene.hands[0] = HandSight::kAbsent;
   for (const JointId id : {kLeftWrist, kLeftHand}) {
@@ -86,7 +86,7 @@ TEST(BodyChoose, AHandBehindTheTrunkIsAForearmAndAPalmFromItsElbow) {
     s.scene.expected[id] = {on_the_back(id == kLeftWrist ? 0.15 : 0.218), 0.2, 10};
     s.put(id, {{1.9, 1}});  // the trunk
   }
-  const auto wrist = on_back(s.scene, kLeftWrist, kElbow, 0.238);
+  const auto wrist = on_back(s.scene, kLeftWrist, elbow, 0.238);
   ASSERT_TRUE(wrist);
   EXPECT_LT(distance(*wrist, on_the_back(0.2260)), 1e-4);
   Choices chosen;
@@ -99,12 +99,12 @@ TEST(BodyChoose, AHandBehindTheTrunkIsAForearmAndAPalmFromItsElbow) {
   Fitted fitted;
   Fit().run(s.scene, chosen, {}, fitted);
   EXPECT_LT(distance(fitted.places[kLeftWrist], on_the_back(0.2260)), 0.012);
-  EXPECT_LT(distance(fitted.places[kLeftElbow], kElbow), 0.012);
+  EXPECT_LT(distance(fitted.places[kLeftElbow], elbow), 0.012);
 
   EXPECT_FALSE(on_back(s.scene, kLeftWrist, {0.25, -0.19, 1.8}, 0.238));  // 31 cm before the back
   EXPECT_FALSE(on_back(s.scene, kLeftWrist, {0.45, -0.19, 2.05}, 0.1));   // beside the trunk
   s.scene.hands[0] = HandSight::kNotAsked;
-  EXPECT_FALSE(on_back(s.scene, kLeftWrist, kElbow, 0.238));
+  EXPECT_FALSE(on_back(s.scene, kLeftWrist, elbow, 0.238));
 }
 
 TEST(BodyChoose, AWristBehindTheTrunkIsNotMarkedOnItsUpperArm) {
