@@ -145,6 +145,22 @@ TEST(FilePairs, ACameraThatBeginsLater) {
   EXPECT_NE(apart.error.find("--skew-ms"), std::string::npos) << apart.error;
 }
 
+/// Two recordings in one file, each of which begins at 0: all pictures pair, and it is said.
+TEST(FilePairs, TimesThatGoBackGoOn) {
+  const TempFolder dir;
+  for (const char* name : {"left.ts", "right.ts"}) {
+    write_video_at(dir / name, AV_CODEC_ID_MPEG2VIDEO, AV_PIX_FMT_YUV420P, ticks(0, 12), {.key_every = 1});
+    const std::string once = bytes_of(dir / name);
+    put(dir / name, once + once);
+  }
+  const PairsRead read = read_pairs(dir / "left.ts", dir / "right.ts");
+  EXPECT_EQ(read.error, "");
+  ASSERT_GE(read.shown.size(), 22u) << read.warning;
+  for (const auto& [l, r] : read.shown) EXPECT_EQ(l, r);
+  EXPECT_NE(read.warning.find("left.ts go back at picture "), std::string::npos) << read.warning;
+  EXPECT_NE(read.warning.find("right.ts go back at picture "), std::string::npos) << read.warning;
+}
+
 TEST(FilePairs, OnlyMissingBytesAreACut) {
   const TempFolder dir;
   struct Whole {

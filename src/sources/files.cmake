@@ -21,7 +21,9 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/picture_bytes.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/pictures.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/recording.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/rising_times.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/source_choice.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/stereo_layout.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/stream.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/stream_input.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/two_files.cpp
@@ -29,7 +31,7 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/video.cpp)
 duoptic_test(sources/files ${PROJECT_SOURCE_DIR}/src/sources/files_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/file_pairs_test.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/picture_bytes_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/board_pictures_test.cpp
-  ${PROJECT_SOURCE_DIR}/src/sources/source_choice_test.cpp)
+  ${PROJECT_SOURCE_DIR}/src/sources/source_choice_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/rising_times_test.cpp)
 foreach(file camera clock_model controls decode device modes system_calls)
   target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/camera/${file}.cpp)
 endforeach()

@@ -17,10 +17,8 @@
 #include "sources/file_source.h"
 #include "sources/libav.h"
 #include "sources/orientation.h"
-
-extern "C" {
-#include <libavutil/stereo3d.h>
-}
+#include "sources/rising_times.h"
+#include "sources/stereo_layout.h"
 
 namespace duo {
 namespace {
@@ -94,6 +92,7 @@ class VideoFile final : public FileSource {
   std::int64_t announced_ = 0;  // packets; 0 = not announced
   std::int64_t packets_ = 0;    // read so far
   TimeNs first_ns_ = 0, shift_ns_ = 0;
+  RisingTimes times_;             // of next()
   TimeNs shown_ns_ = 0;           // time of the last picture decoded
   TimeNs recorded_frame_ns_ = 0;  // of our own recordings: from picture to picture; 0: not one
   std::optional<bool> lacks_bytes_;
@@ -129,23 +128,6 @@ Orientation orientation_of(const AVStream& stream) {
   if (data == nullptr || bytes != sizeof matrix) return Orientation::kTopLeft;
   std::memcpy(matrix.data(), data, sizeof matrix);
   return orientation_of_matrix(matrix);
-}
-
-/// Where both views are, as container or codec say it; empty where they say nothing, or that there is one.
-///
-/// `name`   set to what is not read: views in turn, interleaved or as a checkerboard
-std::optional<ViewLayout> layout_of(const AVStream& stream, const AVFrame& frame, std::string& name) {
-  std::size_t bytes = 0;
-  const auto* stereo = reinterpret_cast<const AVStereo3D*>(av_stream_get_side_data(&stream, AV_PKT_DATA_STEREO3D, &bytes));
-  if (stereo == nullptr || stereo->type == AV_STEREO3D_2D)
-    if (const AVFrameSideData* data = av_frame_get_side_data(&frame, AV_FRAME_DATA_STEREO3D); data != nullptr)
-      stereo = reinterpret_cast<const AVStereo3D*>(data->data);
-  if (stereo == nullptr || stereo->type == AV_STEREO3D_2D) return std::nullopt;
-  const bool right_first = (stereo->flags & AV_STEREO3D_FLAG_INVERT) != 0;
-  if (stereo->type == AV_STEREO3D_SIDEBYSIDE) return right_first ? ViewLayout::kRightLeft : ViewLayout::kSideBySide;
-  if (stereo->type == AV_STEREO3D_TOPBOTTOM) return right_first ? ViewLayout::kBottomTop : ViewLayout::kTopBottom;
-  name = av_stereo3d_type_name(static_cast<unsigned>(stereo->type));
-  return std::nullopt;
 }
 
 Result<void> VideoFile::open(const std::filesystem::path& path, std::optional<int> track, const char* format) {
@@ -220,9 +202,11 @@ std::string VideoFile::warning() const {
   if (left_out_ > 0)
     all = fmt::format("{} picture{} of {} {} damaged: left out", left_out_, left_out_ == 1 ? "" : "s", name_,
                       left_out_ == 1 ? "is" : "are");
+  const auto add = [&](const std::string& text) { all += (all.empty() || text.empty() ? "" : "; ") + text; };
+  add(times_.warning(name_));
   if (interlaced_)
-    all += fmt::format("{}{} is interlaced, rows of two moments; ffmpeg -i {} -vf bwdif -c:v ffv1 whole.mkv makes it whole",
-                       all.empty() ? "" : "; ", name_, name_);
+    add(fmt::format("{} is interlaced, rows of two moments; ffmpeg -i {} -vf bwdif -c:v ffv1 whole.mkv makes it whole", name_,
+                    name_));
   return all;
 }
 
@@ -290,6 +274,7 @@ Result<void> VideoFile::seek(std::int64_t number) {
   packets_ = number;
   given_ = static_cast<std::uint64_t>(number);
   drained_ = mending_ = to_key_ = pending_ = false;
+  times_.jump();
   if (decode() != Decoded::kFrame) return failure_ != 0 ? av::input_error("video " + name_, failure_, "") : wrong();
   pending_ = true;
   const AVIndexEntry* const found = avformat_index_get_entry(s, static_cast<int>(packets_ - 1));
@@ -384,7 +369,7 @@ Result<Next> VideoFile::next(Picture& into) {
     into.t_ns = mark->t_ns;
     into.sequence = mark->sequence;
   }
-  into.t_ns += shift_ns_;
+  into.t_ns = times_.next(into.t_ns, frame_ns()) + shift_ns_;
   return Next::kNew;
 }
 
