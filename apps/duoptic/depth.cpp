@@ -17,6 +17,7 @@
 #include "progress.h"
 #include "rig_report.h"
 #include "timing.h"
+#include "within_far.h"
 
 namespace duo::app::depth {
 namespace {
@@ -156,6 +157,7 @@ struct Summary {
   std::vector<double> ms;
   std::vector<std::string> files;
   double coverage_sum = 0;
+  std::string far_warning;
   Next end = Next::kEnd;
 };
 
@@ -171,6 +173,7 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
                  fmt::format("cannot use --frames with {}: it is for the frames of videos", options.left)};
   bool beyond = false;  // the range
   DepthOfAll depth_of_all;
+  WithinFar within_far(options.far_m);
   progress.expect(pipeline.count());
   if (pipeline.live()) Interrupt::is_the_end();
   LiveNews live(app);
@@ -185,6 +188,7 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
     if (const std::string event = pipeline.event(); !event.empty()) say(app, "warning: " + event);
     summary.ms.push_back(pipeline.times().engine_ms);
     summary.coverage_sum += coverage(*pipeline.frame());
+    within_far.see(pipeline.frame()->depth_mm);
 
     const std::uint64_t number = pipeline.pair()->sequence;
     const fs::path folder =
@@ -202,6 +206,7 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
   if (summary.ms.empty() && !options.range.empty() && !beyond && summary.end == Next::kEnd)
     return Error{ErrorCode::kBadInput, fmt::format("cannot give frames {}: {} gives {} pair{}, numbered from 0", options.range,
                                                    options.left, pipeline.read(), pipeline.read() == 1 ? "" : "s")};
+  summary.far_warning = within_far.warning();
   DUO_TRY(depth_of_all.finish(pipeline, files, summary.files));
   return summary;
 }
@@ -214,6 +219,11 @@ nlohmann::json json_of(const std::optional<RowOffsets>& rows) {
           {"median_before_px", rows->before_px},
           {"median_after_px", rows->after_px},
           {"columns_px", rows->lens ? rows->lens->columns_px : 0.0}};
+}
+
+std::string all_warnings(const Summary& summary, const Pipeline& pipeline) {
+  const std::string of_run = pipeline.warning();
+  return of_run + (of_run.empty() || summary.far_warning.empty() ? "" : "; ") + summary.far_warning;
 }
 
 void print(const Summary& summary, const Pipeline& pipeline, const Options& options) {
@@ -241,7 +251,7 @@ void print(const Summary& summary, const Pipeline& pipeline, const Options& opti
                                 {"rig_fit", to_json(pipeline.rig_fit())},
                                 {"camera", camera},
                                 {"cut", summary.end == Next::kCut},
-                                {"warning", pipeline.warning()},
+                                {"warning", all_warnings(summary, pipeline)},
                                 {"files", summary.files}};
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else if (!options.quiet) {
@@ -300,7 +310,8 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(const Summary summary, process(pipeline, options, app, progress));
   progress.end();
   print(summary, pipeline, options);
-  if (const std::string warning = pipeline.warning(); !pipeline.live() && !warning.empty()) say(app, "warning: " + warning);
+  if (const std::string warning = all_warnings(summary, pipeline); !pipeline.live() && !warning.empty())
+    say(app, "warning: " + warning);
   return summary.end == Next::kCut ? Exit::kCut : Exit::kOk;
 }
 

@@ -83,11 +83,6 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   setup.frame_s = input.pairs->frame_s();
   setup.replace = options.force;
   if (input.pairs->live()) setup.date = date_now();
-  const Size size = input.pairs->size();
-  if (setup.rig && setup.rig->left.size != size)
-    return Error{ErrorCode::kBadInput,
-                 fmt::format("cannot record {} with this rig: it is of pictures of {}x{}, these have {}x{}", options.left,
-                             setup.rig->left.size.width, setup.rig->left.size.height, size.width, size.height)};
   PipelineSetup of_pairs{.engine = "", .check = options.check};
   of_pairs.frames.rig = setup.rig;
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(of_pairs)));

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "calib/scene_pose.h"
+#include "calib/rig_size.h"
 #include "duoptic/statistics.h"
 
 namespace duo {
@@ -139,10 +139,20 @@ Rig guessed_rig(Size size) {
   return rig;
 }
 
+std::vector<double> seen_disparities_px(const std::optional<Rig>& rig, const Pair& pair) {
+  const auto matches =
+      agreeing_matches(rig ? *rig : guessed_rig(pair.left.pixels.size()), match_pair(pair, 1, SceneSearch::kQuick));
+  if (!matches) return {};
+  if (rig) return sorted_disparities_px(*rig, *matches);
+  std::vector<double> out;
+  for (const SceneMatch& match : *matches) out.push_back(match.left_px.x - match.right_px.x);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 Result<void> check_size(const Rig& lenses, Size size) {
-  if (size == lenses.left.size) return {};
-  return scene_error(fmt::format("the pictures are {}x{}, the rig is for {}x{}; use the size it was calibrated at", size.width,
-                                 size.height, lenses.left.size.width, lenses.left.size.height));
+  const std::string why = why_other_size(lenses, size);
+  return why.empty() ? Result<void>() : scene_error(why);
 }
 
 Result<Evidence> evidence_of(const SceneMatches& scene, std::vector<SceneMatch> matches) {
@@ -155,6 +165,14 @@ Result<Evidence> evidence_of(const SceneMatches& scene, std::vector<SceneMatch> 
                                    evidence.matches.size(), 100 * covered,
                                    missing.empty() ? "" : " (none in " + missing + ")"));
   return evidence;
+}
+
+void take_pose(const Rig& rig, const ScenePose& pose, const Evidence& evidence, SceneHealth& health) {
+  health.turned_rad = pose.turned_rad;
+  health.turned_sigma_rad = pose.turn_sigma_rad;
+  health.pan_px = std::abs(pose.turned_rad.y) * rig.left.fx_px;
+  health.pan_sigma_px = pose.turn_sigma_rad.y * rig.left.fx_px;
+  health.lens_row_px = systematic_row_px(evidence, row_errors_px(pose.rig, evidence.matches));
 }
 
 Result<SceneHealth> judge_scene(const Rig& rig, const Evidence& evidence, bool pose_known) {
@@ -175,11 +193,7 @@ Result<SceneHealth> judge_scene(const Rig& rig, const Evidence& evidence, bool p
   health.row_px = systematic_row_px(evidence, errors);
   health.row_median_px = quantile(sizes, 0.5);
   health.row_p95_px = quantile(sizes, 0.95);
-  health.turned_rad = free.turned_rad;
-  health.turned_sigma_rad = free.turn_sigma_rad;
-  health.pan_px = std::abs(free.turned_rad.y) * rig.left.fx_px;
-  health.pan_sigma_px = free.turn_sigma_rad.y * rig.left.fx_px;
-  health.lens_row_px = systematic_row_px(evidence, row_errors_px(free.rig, evidence.matches));
+  take_pose(rig, free, evidence, health);
   health.verdict = verdict_of(health, rig.metric);
   return health;
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,7 +9,7 @@
 #include <vector>
 
 #include "calib/judge_scene.h"
-#include "calib/normal_equations.h"
+#include "calib/moved_points.h"
 #include "calib/rig_fitting.h"
 #include "calib/row_offsets.h"
 #include "calib/scene_pose.h"
@@ -81,15 +80,23 @@ constexpr Posture kPostures[] = {
     {kOnSide, quarter_turn},
     {kOnSide, three_quarter_turn}};
 
+constexpr double kByChance = 0.025,  // share of points that match in pictures of two places: up to 0.014
+    kOfOneScene = 0.06;              // and of one: from 0.09 on, in a bare hall
+
+/// Matches of a pair.
+std::size_t alike_in(const SceneMatches& scene) { return scene.matches.size() / static_cast<std::size_t>(scene.pairs); }
+/// Of one place, seen the same way, however few points agree.
+bool are_of_one_scene(const SceneMatches& scene) {
+  return static_cast<double>(alike_in(scene)) > kOfOneScene * scene.fewest_points;
+}
+
 /// Why views do not agree; empty: it is not known.
 std::string why_apart(const SceneMatches& scene, const Pair& pair, int threads) {
   constexpr int kManyPoints = 100;                // in either picture: a scene with texture, in light
-  constexpr double kByChance = 0.025,             // share of points that match in pictures of two places: up to 0.014
-      kOfOneScene = 0.06;                         // and of one: from 0.09 on, in a bare hall
   constexpr std::size_t kFewest = 8, kTimes = 4;  // matches of a picture whose posture is undone, and how many more than before
-  const std::size_t alike = scene.matches.size() / static_cast<std::size_t>(scene.pairs);
+  const std::size_t alike = alike_in(scene);
   const double points = scene.fewest_points;
-  if (points < kFewest || static_cast<double>(alike) > kOfOneScene * points) return {};
+  if (points < kFewest || are_of_one_scene(scene)) return {};
   Pair other{{pair.left.pixels.clone()}, {}};
   for (const Posture& posture : kPostures) {
     other.right.pixels = posture.undone(pair.right.pixels);
@@ -121,25 +128,11 @@ std::string why_rows_differ(const std::vector<SceneMatch>& matches, int height) 
       rows_px[rows_px.size() / 20], rows_px[rows_px.size() - 1 - rows_px.size() / 20]);
 }
 
-/// What values at the matches are by a plane over the left picture: a constant, per column, per row.
-Eigen::VectorXd plane_of(const std::vector<SceneMatch>& matches, double (*value)(const SceneMatch&)) {
-  const auto count = static_cast<Eigen::Index>(matches.size());
-  Eigen::MatrixXd terms(count, 3);
-  Eigen::VectorXd values(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const SceneMatch& m = matches[static_cast<std::size_t>(i)];
-    terms.row(i) << 1, m.left_px.x, m.left_px.y;
-    values[i] = value(m);
-  }
-  return solve_normal(terms.transpose() * terms, terms.transpose() * values);
-}
-
 /// Median of what they keep when that plane is taken off them.
 double off_plane_px(const std::vector<SceneMatch>& matches, double (*value)(const SceneMatch&)) {
-  const Eigen::VectorXd plane = plane_of(matches, value);
+  const MatchPlane plane = plane_of(matches, value);
   std::vector<double> off;
-  for (const SceneMatch& m : matches)
-    off.push_back(std::abs(value(m) - plane.dot(Eigen::Vector3d(1, m.left_px.x, m.left_px.y))));
+  for (const SceneMatch& m : matches) off.push_back(std::abs(value(m) - plane.at(m.left_px)));
   return median(off);
 }
 
@@ -180,7 +173,7 @@ std::string why_columns_differ(const std::vector<SceneMatch>& matches) {
       kLeast = 0.1;                  // a wall at an angle has less from side to side
   const std::vector<double> d_px = disparities_px(matches);
   if (share_of(d_px, 0.5) > -1 && share_of(d_px, kSome) > kBehind_px) return {};
-  const double stretch = plane_of(matches, disparity_px)[1];
+  const double stretch = plane_of(matches, disparity_px).per_column;
   if (std::abs(stretch) >= kLeast && spread(disparities_px(matches, stretch)) < kLevelled * spread(d_px))
     return fmt::format(
         "the right picture is {:.0f} % {} than the left one: points lie {:.0f} px further right in it to {:.0f} px further "
@@ -237,11 +230,8 @@ RigFit judged(const Rig& rig, const Evidence& evidence) {
   std::optional<ScenePose> turned;
   if (health->verdict != RigVerdict::kRecalibrate && rig.metric) turned = one_camera_pan(rig, evidence, *health);
   if (turned) {
+    take_pose(rig, *turned, evidence, *health);
     health->verdict = RigVerdict::kCanBeImproved;
-    health->turned_rad = turned->turned_rad;
-    health->turned_sigma_rad = turned->turn_sigma_rad;
-    health->pan_px = std::abs(turned->turned_rad.y) * rig.left.fx_px;
-    health->pan_sigma_px = turned->turn_sigma_rad.y * rig.left.fx_px;
   }
   RigFit fit{health->verdict, {}, *health};
   // A few pairs are looked at in every run: what they may say by chance is not said. Where they could not tell the least pan
@@ -291,8 +281,13 @@ std::optional<RigFit> fit_by_numbers(const std::optional<Rig>& rig, Size size) {
 
 }  // namespace
 
-RigFitting::RigFitting(std::optional<Rig> rig, Size size, int threads, SceneSearch most)
-    : rig_(std::move(rig)), lenses_(rig_ ? *rig_ : guessed_rig(size)), size_(size), threads_(threads), most_(most) {}
+RigFitting::RigFitting(std::optional<Rig> rig, Size size, int threads, SceneSearch most, bool still)
+    : rig_(std::move(rig)),
+      lenses_(rig_ ? *rig_ : guessed_rig(size)),
+      size_(size),
+      threads_(threads),
+      most_(most),
+      still_(still) {}
 
 void RigFitting::add(const std::shared_ptr<const Pair>& pair) {
   if (!matcher_) matcher_.emplace(size_, threads_, most_);
@@ -305,14 +300,22 @@ std::optional<RigFit> RigFitting::by_matches(const SceneMatches& scene) const {
   if (one_picture(scene.matches)) return misfit("left and right are the same picture; give one of each camera");
   const auto matches = agreeing_matches(lenses_, scene);
   if (!matches) return {};
+  RigFit fit = by_agreeing(scene, *matches);
+  if (!still_ || !fit.what.empty()) return fit;
+  fit.what = why_moved(rig_, scene, *matches);
+  if (!fit.what.empty()) fit.verdict = RigVerdict::kCanBeImproved;
+  return fit;
+}
+
+RigFit RigFitting::by_agreeing(const SceneMatches& scene, const std::vector<SceneMatch>& matches) const {
   if (!rig_) {
-    std::string why = why_along_columns(*matches);
-    if (why.empty()) why = why_swapped(*matches);
-    if (why.empty()) why = why_rows_differ(*matches, size_.height);
-    if (why.empty()) why = why_columns_differ(*matches);
+    std::string why = why_along_columns(matches);
+    if (why.empty()) why = why_swapped(matches);
+    if (why.empty()) why = why_rows_differ(matches, size_.height);
+    if (why.empty()) why = why_columns_differ(matches);
     return why.empty() ? RigFit() : misfit(std::move(why));
   }
-  const auto evidence = evidence_of(scene, *matches);
+  const auto evidence = evidence_of(scene, matches);
   return evidence ? judged(*rig_, *evidence) : untold(rig_);
 }
 
@@ -327,15 +330,19 @@ std::optional<RigFit> RigFitting::by_first(const std::shared_ptr<const Pair>& pa
     if (auto fit = by_matches(match_pair(*pair, threads_, SceneSearch::kQuick)); sure(fit, SceneSearch::kQuick)) return fit;
   add(pair);
   auto fit = by_matches(matcher_->matches());
+  judged_ = fit && fit->scene;
   return sure(fit, most_) ? fit : std::nullopt;
 }
 
 RigFit RigFitting::by_all(std::span<const std::shared_ptr<const Pair>> others) {
-  for (const auto& pair : others) add(pair);
+  // A quick search that found enough in the first finds the same in the others.
+  for (const auto& pair : others) most_ == SceneSearch::kQuick&& judged_ ? matcher_->add_same(*pair) : add(pair);
   if (!matcher_ || !last_) return untold(rig_);
   const SceneMatches scene = matcher_->matches();
   if (auto fit = by_matches(scene)) return *fit;
-  // Why they do not agree is told by more points than a quick search finds.
+  // Why they do not agree is told by more points than a quick search finds, whose many tell that they are of one scene.
+  constexpr std::size_t kMany = 6;
+  if (most_ == SceneSearch::kQuick && alike_in(scene) >= kMany && are_of_one_scene(scene)) return untold(rig_);
   std::string why = why_apart(most_ == SceneSearch::kQuick ? match_pair(*last_, threads_) : scene, *last_, threads_);
   return why.empty() ? untold(rig_) : misfit(std::move(why));
 }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "calib/scene_matches.h"
 #include "duoptic/rig_fit.h"
@@ -14,7 +15,8 @@ namespace duo {
 class RigFitting {
  public:
   /// Pictures of `size`. Takes its memory when it is used. `most`: how a pair is searched where a quick search leaves a doubt.
-  RigFitting(std::optional<Rig> rig, Size size, int threads, SceneSearch most = SceneSearch::kThorough);
+  /// `still`: it is one pair of photos, between which things may have moved.
+  RigFitting(std::optional<Rig> rig, Size size, int threads, SceneSearch most = SceneSearch::kThorough, bool still = false);
 
   /// What the first pair tells beyond doubt, right or wrong; none where others have to be looked at, too. To be called once.
   std::optional<RigFit> by_first(const std::shared_ptr<const Pair>& pair);
@@ -23,6 +25,7 @@ class RigFitting {
 
  private:
   std::optional<RigFit> by_matches(const SceneMatches& scene) const;
+  RigFit by_agreeing(const SceneMatches& scene, const std::vector<SceneMatch>& matches) const;
   void add(const std::shared_ptr<const Pair>& pair);
 
   const std::optional<Rig> rig_;
@@ -30,6 +33,8 @@ class RigFitting {
   const Size size_;
   const int threads_;
   const SceneSearch most_;
+  const bool still_;
+  bool judged_ = false;                  // by the first pair, though not beyond doubt
   std::optional<SceneMatcher> matcher_;  // of all pairs that were added
   std::shared_ptr<const Pair> last_;
 };

@@ -159,7 +159,7 @@ TEST_F(Room, SaysWhatIsWrongWithThePictures) {
   Pairs stream = pairs();
   const auto other_size = scene_health(synthetic_rig({.size = {640, 480}}), stream, 2);
   ASSERT_FALSE(other_size);
-  expect_error(other_size.error(), "480x360, the rig is for 640x480");
+  expect_error(other_size.error(), "640x480, these have 480x360, the same scaled by 0.75");
 }
 
 TEST(RigDoubts, NamesWhatNoWebcamHas) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "calib/rig_size.h"
 #include "tests/replaced.h"
 
 namespace duo {
@@ -37,6 +38,18 @@ void expect_refused(const Rig& rig, const std::string& part) {
   ASSERT_FALSE(result) << "expected: " << part;
   EXPECT_NE(result.error().what.find("my_rig.json"), std::string::npos) << result.error().what;
   EXPECT_NE(result.error().what.find(part), std::string::npos) << result.error().what;
+}
+
+/// By hand: 1280x720 is 16:9; 320x240 half of 640x480.
+TEST(Rig, PicturesOfAnotherSizeAreToldByTheirShape) {
+  EXPECT_EQ(why_other_size(good_rig(), {640, 480}), "");
+  const auto expect_words = [](Size pictures, const std::string& words) {
+    const std::string why = why_other_size(good_rig(), pictures);
+    EXPECT_NE(why.find(words), std::string::npos) << why;
+  };
+  expect_words({1280, 720}, "640x480, these have 1280x720, of another shape, so they were cropped or stretched");
+  expect_words({320, 240}, "the same scaled by 0.5");
+  expect_words({480, 640}, "on their side");
 }
 
 void expect_text_refused(std::string_view text, const std::string& part) {

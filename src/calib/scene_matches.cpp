@@ -82,7 +82,7 @@ struct SceneMatcher::State {
       coarse.emplace_back(half = half_of(half));
   }
 
-  void find(const Picture& picture, SiftPoints& out, Image<float>& smooth) {
+  void take(const Picture& picture, Image<float>& smooth) {
     simd::gray(pool, picture.pixels, given.empty() ? gray : given);
     if (px_given < 1) cv::resize(cv_view(given), cv_view(gray), {gray.width(), gray.height()}, 0, 0, cv::INTER_LINEAR);
     if (px_given > 1) {
@@ -90,13 +90,30 @@ struct SceneMatcher::State {
       for (Image<std::uint8_t>& half : larger) simd::halve(pool, *from, half), from = &half;
       simd::halve(pool, *from, gray);
     }
-    for (int i = 0; i < halvings; ++i) simd::halve(pool, i == 0 ? gray : coarse[i - 1], coarse[i]);
-    const Image<std::uint8_t>& searched = halvings > 0 ? coarse.back() : gray;
-    simd::sift(pool, searched, Window::all(searched.size()), {.contrast = 0.02f}, scratch, out);
     cv::Mat to(smooth.height(), smooth.width(), CV_32F, smooth.row(0),
                sizeof(float) * static_cast<std::size_t>(smooth.stride()));
     cv_view(gray).convertTo(to, CV_32F);
     cv::GaussianBlur(to, to, {}, kSmooth_px);
+  }
+  void take(const Picture& picture, SiftPoints& out, Image<float>& smooth) {
+    take(picture, smooth);
+    for (int i = 0; i < halvings; ++i) simd::halve(pool, i == 0 ? gray : coarse[i - 1], coarse[i]);
+    const Image<std::uint8_t>& searched = halvings > 0 ? coarse.back() : gray;
+    simd::sift(pool, searched, Window::all(searched.size()), {.contrast = 0.02f}, scratch, out);
+  }
+  /// Those of the candidates, which lie in the gray picture, that look the same there.
+  void align(const std::vector<SceneCandidate>& candidates) {
+    put_slopes(smooth_right, sloped_right);
+    std::vector<SceneCandidate> here;
+    for (SceneCandidate c : candidates)
+      if (const auto there = align_match(smooth_left, c.match.left_px, sloped_right, c.match.right_px, kRadius_px)) {
+        c.match.right_px = *there;
+        here.push_back(c);
+        c.match = {given_place_of(c.match.left_px), given_place_of(*there)};
+        all.push_back(c);
+      }
+    last = std::move(here);
+    ++scene.pairs;
   }
   /// In the gray picture: the centre of a coarse pixel lies between those of its four.
   Vec2 place_of(const SiftPoint& point) const {
@@ -122,8 +139,8 @@ struct SceneMatcher::State {
   SiftScratch scratch;
   SiftPoints left, right;
   std::vector<PointMatch> found;
-  std::vector<SceneCandidate> all;
-  SceneMatches scene;  // but for the matches
+  std::vector<SceneCandidate> all, last;  // last: of one pair, in its gray pictures
+  SceneMatches scene;                     // but for the matches
 };
 
 SceneMatcher::SceneMatcher(Size size, int threads, SceneSearch search)
@@ -132,9 +149,8 @@ SceneMatcher::~SceneMatcher() = default;
 
 void SceneMatcher::add(const Pair& pair) {
   State& s = *state_;
-  s.find(pair.left, s.left, s.smooth_left);
-  s.find(pair.right, s.right, s.smooth_right);
-  put_slopes(s.smooth_right, s.sloped_right);
+  s.take(pair.left, s.left, s.smooth_left);
+  s.take(pair.right, s.right, s.smooth_right);
   s.found.resize(static_cast<std::size_t>(s.left.count));
   simd::match_points(s.pool, s.left, {}, s.right, {.ratio_percent = 75}, s.found);
   std::vector<SceneCandidate> candidates;
@@ -144,14 +160,15 @@ void SceneMatcher::add(const Pair& pair) {
       candidates.push_back({{s.place_of(s.left[i]), s.place_of(s.right[found.seen])}, found.square_distance});
   }
   if (s.quick) keep_best(candidates, s.gray.size(), kFewOfACell);
-  for (SceneCandidate& c : candidates)
-    if (const auto there = align_match(s.smooth_left, c.match.left_px, s.sloped_right, c.match.right_px, kRadius_px)) {
-      c.match = {s.given_place_of(c.match.left_px), s.given_place_of(*there)};
-      s.all.push_back(c);
-    }
   const int points = std::min(s.left.count, s.right.count);
   s.scene.fewest_points = s.scene.pairs == 0 ? points : std::min(s.scene.fewest_points, points);
-  ++s.scene.pairs;
+  s.align(candidates);
+}
+
+void SceneMatcher::add_same(const Pair& pair) {
+  state_->take(pair.left, state_->smooth_left);
+  state_->take(pair.right, state_->smooth_right);
+  state_->align(std::vector(state_->last));
 }
 
 SceneMatches SceneMatcher::matches() const {

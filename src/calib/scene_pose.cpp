@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
+#include <utility>
 
 #include "calib/normal_equations.h"
 #include "calib/rig_formats.h"
@@ -31,18 +32,55 @@ std::vector<RayPair> rays_of(const Rig& rig, const std::vector<SceneMatch>& matc
 }
 
 double mean_focal_px(const Camera& camera) { return (camera.fx_px + camera.fy_px) / 2; }
+double square(double x) { return x * x; }
+
+Mat3 essential_of(const Rig& rig) {
+  const Vec3 t = normalized(rig.right_from_left.t_m);
+  return Mat3{{0, -t.z, t.y, t.z, 0, -t.x, -t.y, t.x, 0}} * rig.right_from_left.rotation;
+}
+
+/// What Sampson's distance is made of: right^T E left over the length of its gradient, in which lengths are pixels.
+class EpipolarError {
+ public:
+  explicit EpipolarError(const Rig& rig)
+      : essential_(essential_of(rig)),
+        back_(transposed(essential_)),
+        per_left_px2_(1 / square(mean_focal_px(rig.left))),
+        per_right_px2_(1 / square(mean_focal_px(rig.right))) {}
+
+  void set(const RayPair& rays) {
+    rays_ = rays;
+    in_right_ = essential_ * rays.left;
+    in_left_ = back_ * rays.right;
+    product_ = dot(rays.right, in_right_);
+    gradient_ = std::sqrt(per_right_px2_ * (square(in_right_.x) + square(in_right_.y)) +
+                          per_left_px2_ * (square(in_left_.x) + square(in_left_.y)));
+  }
+  double px() const { return std::sqrt(2) * product_ / gradient_; }
+  /// By a change of the essential matrix, and of its transpose.
+  double slope_px(const Mat3& change, const Mat3& change_back) const {
+    const Vec3 in_right = change * rays_.left, in_left = change_back * rays_.right;
+    const double of_gradient = (per_right_px2_ * (in_right_.x * in_right.x + in_right_.y * in_right.y) +
+                                per_left_px2_ * (in_left_.x * in_left.x + in_left_.y * in_left.y)) /
+                               gradient_;
+    return std::sqrt(2) * (dot(rays_.right, in_right) - product_ * of_gradient / gradient_) / gradient_;
+  }
+
+ private:
+  Mat3 essential_, back_;
+  double per_left_px2_, per_right_px2_;
+  RayPair rays_;
+  Vec3 in_right_, in_left_;  // lines in both pictures on which the other's point lies
+  double product_ = 0, gradient_ = 0;
+};
 
 std::vector<double> row_errors_px(const Rig& rig, const std::vector<RayPair>& rays) {
-  const Vec3 t = normalized(rig.right_from_left.t_m);
-  const Mat3 essential = Mat3{{0, -t.z, t.y, t.z, 0, -t.x, -t.y, t.x, 0}} * rig.right_from_left.rotation;
-  const Mat3 back = transposed(essential);
-  const double fl = mean_focal_px(rig.left), fr = mean_focal_px(rig.right);
+  EpipolarError error(rig);
   std::vector<double> out(rays.size(), std::nan(""));
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!rays[i].seen) continue;
-    const Vec3 in_right = essential * rays[i].left, in_left = back * rays[i].right;
-    const double slope = std::hypot(in_right.x / fr, in_right.y / fr, std::hypot(in_left.x / fl, in_left.y / fl));
-    out[i] = std::sqrt(2) * dot(rays[i].right, in_right) / slope;
+    error.set(rays[i]);
+    out[i] = error.px();
   }
   return out;
 }
@@ -95,21 +133,52 @@ class Problem {
     return lens_held_ ? row_errors_px(rig, rays_) : row_errors_px(rig, rays_of(rig, matches_));
   }
 
-  Eigen::MatrixXd slopes(const ScenePlace& at) const {
-    constexpr double kStep = 1e-6;
+  Eigen::MatrixXd slopes(const ScenePlace& at) const { return lens_held_ ? slopes_by_pose(at) : slopes_by_steps(at); }
+
+ private:
+  static constexpr double kStep = 1e-6;
+  struct Steps {
+    Rig before, after;
+  };
+  Steps steps(const ScenePlace& at, std::size_t part) const {
+    ScenePlace before = at, after = at;
+    before[part] -= kStep;
+    after[part] += kStep;
+    return {moved(start_, before), moved(start_, after)};
+  }
+
+  /// Where the rays stay: from what each part does to the essential matrix.
+  Eigen::MatrixXd slopes_by_pose(const ScenePlace& at) const {
+    Eigen::MatrixXd out(static_cast<Eigen::Index>(rays_.size()), static_cast<Eigen::Index>(free_.size()));
+    EpipolarError error(moved(start_, at));
+    std::vector<std::pair<Mat3, Mat3>> changes;  // per part; transposed, too
+    for (const std::size_t part : free_) {
+      const auto [before, after] = steps(at, part);
+      const Mat3 a = essential_of(before), b = essential_of(after);
+      Mat3 change;
+      for (std::size_t i = 0; i < change.m.size(); ++i) change.m[i] = (b.m[i] - a.m[i]) / (2 * kStep);
+      changes.emplace_back(change, transposed(change));
+    }
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      error.set(rays_[i]);
+      for (std::size_t j = 0; j < free_.size(); ++j)
+        out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+            rays_[i].seen ? error.slope_px(changes[j].first, changes[j].second) : std::nan("");
+    }
+    return out;
+  }
+
+  Eigen::MatrixXd slopes_by_steps(const ScenePlace& at) const {
     Eigen::MatrixXd out(static_cast<Eigen::Index>(matches_.size()), static_cast<Eigen::Index>(free_.size()));
     for (std::size_t j = 0; j < free_.size(); ++j) {
-      ScenePlace before = at, after = at;
-      before[free_[j]] -= kStep;
-      after[free_[j]] += kStep;
-      const auto a = errors(before), b = errors(after);
+      const auto [before, after] = steps(at, free_[j]);
+      const auto a = row_errors_px(before, rays_of(before, matches_)), b = row_errors_px(after, rays_of(after, matches_));
       for (std::size_t i = 0; i < a.size(); ++i)
         out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = (b[i] - a[i]) / (2 * kStep);
     }
     return out;
   }
 
- private:
   const Rig& start_;
   const std::vector<SceneMatch>& matches_;
   int repeats_;
@@ -156,8 +225,10 @@ PoseEquations equations_at(const Problem& problem, const SceneFreedom& freedom, 
     const auto slope = slopes.row(static_cast<Eigen::Index>(i));
     const double weight = weight_of(errors[i], out.sigma_px) / (out.sigma_px * out.sigma_px * problem.repeats());
     if (weight == 0 || !slope.allFinite()) continue;
-    out.information += weight * slope.transpose() * slope;
-    out.pull -= weight * errors[i] * slope.transpose();
+    for (Eigen::Index j = 0; j < parts; ++j) {
+      out.pull[j] -= weight * errors[i] * slope[j];
+      for (Eigen::Index k = 0; k < parts; ++k) out.information(j, k) += weight * slope[j] * slope[k];
+    }
   }
   for (Eigen::Index j = 0; j < parts; ++j) {
     const std::size_t part = problem.free()[static_cast<std::size_t>(j)];
@@ -177,7 +248,7 @@ struct Solution {
 /// Gauss-Newton from a place near the solution.
 Result<Solution> solve(const Problem& problem, const SceneFreedom& freedom, Weight weight_of, ScenePlace at) {
   constexpr int kRounds = 100;
-  constexpr double kLongestStep = 0.3, kConverged = 1e-9;
+  constexpr double kLongestStep = 0.3, kConverged = 1e-7;  // radians, as in 0.0001 px
   const auto parts = static_cast<Eigen::Index>(problem.free().size());
   PoseEquations equations;
   for (int round = 0; round < kRounds; ++round) {
@@ -193,8 +264,6 @@ Result<Solution> solve(const Problem& problem, const SceneFreedom& freedom, Weig
   }
   return Solution{at, inverse_of(equations.information), equations.sigma_px};
 }
-
-double square(double x) { return x * x; }
 
 /// What even a good calibration leaves of the lenses: rows that are off alike in whole parts of the picture. More matches take
 /// the noise away, and not this.

@@ -1,5 +1,6 @@
 #include "engines/prepared.h"
 
+#include "calib/rig_size.h"
 #include "calib/row_offsets.h"
 #include "sources/picture_bytes.h"
 
@@ -46,11 +47,7 @@ Result<Prepared> prepare_setup(const Setup& setup) {
   out.size = setup.size;
   if (setup.rig) {
     const Rig& rig = *setup.rig;
-    if (!(rig.left.size == setup.size) || !(rig.right.size == setup.size))
-      return bad(fmt::format(
-          "prepare the engine: the rig was calibrated at {}x{}, the pictures are {}x{}; calibrate at the size in use, "
-          "or give pictures of the rig's size",
-          rig.left.size.width, rig.left.size.height, setup.size.width, setup.size.height));
+    if (const std::string why = why_other_size(rig, setup.size); !why.empty()) return bad("cannot use the rig: " + why);
     DUO_TRY_ASSIGN(out.rectification, make_rectification(rig, "rig"));
     out.geometry = out.rectification->geometry;
     out.size = out.geometry->size;

@@ -1,10 +1,10 @@
 # Explicit names, no glob: what is not listed is not built.
 target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/pipeline/registry.cpp ${PROJECT_SOURCE_DIR}/src/pipeline/write_clip.cpp
   ${PROJECT_SOURCE_DIR}/src/pipeline/export_recording.cpp ${PROJECT_SOURCE_DIR}/src/pipeline/flat_picture.cpp
-  ${PROJECT_SOURCE_DIR}/src/pipeline/focus_line.cpp
+  ${PROJECT_SOURCE_DIR}/src/pipeline/focus_line.cpp ${PROJECT_SOURCE_DIR}/src/pipeline/found_watch.cpp
   ${PROJECT_SOURCE_DIR}/src/pipeline/frame_stream.cpp ${PROJECT_SOURCE_DIR}/src/pipeline/pipeline.cpp
   ${PROJECT_SOURCE_DIR}/src/pipeline/black_bars.cpp ${PROJECT_SOURCE_DIR}/src/pipeline/offset_watch.cpp
-  ${PROJECT_SOURCE_DIR}/src/pipeline/picture_watch.cpp
+  ${PROJECT_SOURCE_DIR}/src/pipeline/pass_over.cpp ${PROJECT_SOURCE_DIR}/src/pipeline/picture_watch.cpp
   ${PROJECT_SOURCE_DIR}/src/pipeline/repeat_watch.cpp ${PROJECT_SOURCE_DIR}/src/pipeline/rig_watch.cpp
   ${PROJECT_SOURCE_DIR}/src/pipeline/skew_watch.cpp
   ${PROJECT_SOURCE_DIR}/src/pipeline/tap.cpp)
@@ -13,6 +13,7 @@ duoptic_test(pipeline/pipeline_focus ${PROJECT_SOURCE_DIR}/src/pipeline/pipeline
 duoptic_test(pipeline/flat_picture ${PROJECT_SOURCE_DIR}/src/pipeline/flat_picture_test.cpp)
 duoptic_test(pipeline/cpu_budget ${PROJECT_SOURCE_DIR}/src/pipeline/cpu_budget_test.cpp)
 duoptic_test(pipeline/focus_line ${PROJECT_SOURCE_DIR}/src/pipeline/focus_line_test.cpp)
+duoptic_test(pipeline/found_watch ${PROJECT_SOURCE_DIR}/src/pipeline/found_watch_test.cpp)
 duoptic_test(pipeline/black_bars ${PROJECT_SOURCE_DIR}/src/pipeline/black_bars_test.cpp)
 duoptic_test(pipeline/offset_watch ${PROJECT_SOURCE_DIR}/src/pipeline/offset_watch_test.cpp)
 duoptic_test(pipeline/picture_watch ${PROJECT_SOURCE_DIR}/src/pipeline/picture_watch_test.cpp)

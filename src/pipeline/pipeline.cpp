@@ -6,9 +6,12 @@
 #include <thread>
 #include <utility>
 
+#include "calib/rig_size.h"
 #include "core/check.h"
 #include "core/clock.h"
+#include "pipeline/found_watch.h"
 #include "pipeline/frame_stream.h"
+#include "pipeline/pass_over.h"
 #include "pipeline/picture_watch.h"
 #include "pipeline/rig_watch.h"
 #include "pipeline/tap.h"
@@ -38,6 +41,7 @@ struct Pipeline::State {
   std::vector<Person> people;
   double tracker_ms = 0;
   PictureWatch pictures;
+  FoundWatch found;
   RigWatch watch;
   std::string rig_news, rig_news_before;  // before: of pairs that were passed over
   std::int64_t passed = 0;                // frames of sources before this one
@@ -50,7 +54,6 @@ struct Pipeline::State {
   Result<void> settle_focus();
   Result<void> prepare_tracker();
   Result<void> start();
-  Result<FrameStream::Passed> pass_over();
   Result<void> look_at_rig(Next next);
   void keep(std::span<const Person> found);
 };
@@ -88,8 +91,11 @@ Result<void> Pipeline::State::prepare() {
   header.metric = !of_engine.rig || of_engine.rig->metric;
   // A recording takes so little time that all points of three pairs would be a tenth of it.
   const bool quick = setup.engine.empty() && of_engine.rig.has_value();
-  if (setup.check != RigCheck::kNone) watch = RigWatch(of_engine.rig, live, quick);
-  if (setup.engine.empty()) return {};
+  if (setup.check != RigCheck::kNone) watch = RigWatch(of_engine.rig, live, waiting->still(), quick);
+  if (setup.engine.empty()) {
+    const std::string why = of_engine.rig ? why_other_size(*of_engine.rig, of_engine.size) : "";
+    return why.empty() ? Result<void>() : Error{ErrorCode::kBadInput, "cannot use the rig: " + why};
+  }
 
   if (tracker != nullptr || !setup.tracker.empty()) {
     if (!of_engine.rig)
@@ -112,6 +118,7 @@ Result<void> Pipeline::State::prepare() {
   header.matcher = of_engine.matcher;
   header.matcher_preset = of_engine.preset;
   if (engine->rectified()) header.rectified = *engine->rectified();
+  if (!live) found = FoundWatch(of_engine, header.rectified, tracker != nullptr && tracker->starts_by_itself());
   return prepare_tracker();
 }
 
@@ -148,28 +155,6 @@ Result<void> Pipeline::State::prepare_tracker() {
                            header.live, setup.body_model, setup.frames.time_stages});
 }
 
-/// Of files: what lies before the first wanted pair. The rig is judged by the first second and frames are aligned by the pair
-/// before, as in a run of all frames; what lies between is not read where the files have indices.
-Result<FrameStream::Passed> Pipeline::State::pass_over() {
-  FrameStream::Passed passed;
-  auto* const files = waiting->live() || recording->status().on ? nullptr : dynamic_cast<FilePairs*>(waiting.get());
-  while (files != nullptr && passed.pairs < setup.first) {
-    if (passed.pairs > 0 && watch.settled() && passed.pairs < setup.first - 1) {
-      DUO_TRY_ASSIGN(const std::uint64_t reached, files->pass_to(static_cast<std::uint64_t>(setup.first - 1)));
-      passed.pairs = static_cast<std::int64_t>(reached);
-    }
-    auto pair = std::make_shared<Pair>();
-    DUO_TRY_ASSIGN(const Next next, files->next(*pair));
-    if (next != Next::kNew) break;
-    if (passed.pairs == 0) passed.start_ns = pair->left.t_ns;
-    const bool looked_at = (setup.first - passed.pairs) % setup.every == 0;
-    if (const RigFit* const news = looked_at ? watch.see(pair, false) : nullptr) rig_news_before = news->what;
-    passed.last = std::move(pair);
-    ++passed.pairs;
-  }
-  return passed;
-}
-
 /// The threads, at the first pair that is asked for.
 Result<void> Pipeline::State::start() {
   if (frames) return {};
@@ -179,7 +164,11 @@ Result<void> Pipeline::State::start() {
     at_once = std::min(at_once, FocusLine::kBehind - 1);  // the frame that the next pair depends on must have been tracked
     focus = std::make_unique<FocusLine>(header.rectified, header.frame_s * static_cast<double>(setup.every), header.live);
   }
-  DUO_TRY_ASSIGN(FrameStream::Passed passed, pass_over());
+  FrameStream::Passed passed;
+  if (auto* const files = dynamic_cast<FilePairs*>(waiting.get());
+      files != nullptr && !header.live && !recording->status().on) {
+    DUO_TRY_ASSIGN(passed, pass_over(*files, {setup.first, setup.every}, watch, rig_news_before));
+  }
   auto tapped = std::make_unique<Tap>(std::move(waiting), recording);
   tap = tapped.get();
   frames = std::make_unique<FrameStream>(std::move(tapped), engine.get(), at_once,
@@ -229,10 +218,15 @@ Result<Next> Pipeline::next() {
     s.pictures.see(*s.pair, live());
   }
   DUO_TRY(s.look_at_rig(next));
+  if (next == Next::kEnd || next == Next::kCut) s.found.end();
   if (next != Next::kNew) return next;
-  if (s.tracker == nullptr) return next;
+  if (s.tracker == nullptr) {
+    if (s.last.frame) s.found.see(*s.last.frame, *s.pair, 0);
+    return next;
+  }
   const std::int64_t begin_ns = wall_ns();
   s.keep(s.tracker->track(*s.last.frame));
+  s.found.see(*s.last.frame, *s.pair, s.people.size());
   if (s.focus) s.focus->tell(s.people, s.last.frame->t_ns);
   s.tracker_ms = static_cast<double>(wall_ns() - begin_ns) * 1e-6;
   return next;
@@ -291,6 +285,7 @@ Result<void> Pipeline::set(const std::vector<std::pair<std::string, double>>& pa
 
 void Pipeline::look_at(std::span<const Window> windows) {
   DUO_CHECK(state_->frames == nullptr);
+  if (!windows.empty()) state_->found = {};  // nothing is known elsewhere
   state_->engine->look_at(windows);
 }
 
@@ -364,6 +359,7 @@ void Pipeline::close_source() {
   s.waiting.reset();
   s.pair.reset();
   s.pictures = {};
+  s.found.forget();
   s.last = {};
   s.people.clear();
 }
@@ -391,8 +387,12 @@ std::int64_t Pipeline::dropped() const {
   return state_->source().dropped() + (state_->frames ? state_->frames->left_out() : 0);
 }
 std::string Pipeline::warning() const {
-  const std::string of_source = state_->source().warning(), pictures = state_->pictures.warning(live());
-  return of_source + (of_source.empty() || pictures.empty() ? "" : "; ") + pictures;
+  const auto& fit = state_->watch.fit();
+  std::string all;
+  for (const std::string& one :
+       {state_->source().warning(), state_->pictures.warning(live()), state_->found.warning(fit && !fit->what.empty())})
+    all += (all.empty() || one.empty() ? "" : "; ") + one;
+  return all;
 }
 
 }  // namespace duo

@@ -13,17 +13,17 @@ constexpr int kWatchedPairs = 3;
 constexpr TimeNs kBetween_ns = 200'000'000, kFirstCounts_ns = 100'000'000, kAllCount_ns = 800'000'000,
                  kAgain_ns = 60'000'000'000;
 
-RigJudge judge_of_rig(const std::optional<Rig>& rig, Size size, SceneSearch most) {
-  auto fitting = std::make_shared<RigFitting>(rig, size, 1, most);
+RigJudge judge_of_rig(const std::optional<Rig>& rig, Size size, SceneSearch most, bool still) {
+  auto fitting = std::make_shared<RigFitting>(rig, size, 1, most, still);
   return {[fitting](const std::shared_ptr<const Pair>& first) { return fitting->by_first(first); },
           [fitting](std::span<const std::shared_ptr<const Pair>> others) { return fitting->by_all(others); }};
 }
 
 }  // namespace
 
-RigWatch::RigWatch(std::optional<Rig> rig, bool live, bool quick)
-    : RigWatch([rig = std::move(rig), most = quick ? SceneSearch::kQuick : SceneSearch::kThorough](
-                   Size size) { return judge_of_rig(rig, size, most); },
+RigWatch::RigWatch(std::optional<Rig> rig, bool live, bool still, bool quick)
+    : RigWatch([rig = std::move(rig), still, most = quick ? SceneSearch::kQuick : SceneSearch::kThorough](
+                   Size size) { return judge_of_rig(rig, size, most, still); },
                live) {}
 
 const RigFit* RigWatch::see(const std::shared_ptr<const Pair>& pair, bool last) {

@@ -28,8 +28,9 @@ struct RigJudge {
 class RigWatch {
  public:
   RigWatch() = default;  // looks at nothing
-  /// `quick`: by few points in any case, for who has little else to do; a rig in front of bare walls may not be judged then.
-  RigWatch(std::optional<Rig> rig, bool live, bool quick = false);
+  /// `still`: one pair of photos. `quick`: by few points in any case, for who has little else to do; a rig in front of bare
+  /// walls may not be judged then.
+  RigWatch(std::optional<Rig> rig, bool live, bool still = false, bool quick = false);
   /// `judge_of`: a judge of pictures of that size.
   RigWatch(std::function<RigJudge(Size)> judge_of, bool live) : judge_of_(std::move(judge_of)), on_(true), live_(live) {}
 

@@ -148,6 +148,25 @@ TEST_F(RigFitTool, ACameraThatHangsIsSaid) {
             std::string::npos);
 }
 
+TEST_F(RigFitTool, WhatFindsNothingSaysWhy) {
+  const auto expect_line = [&](const std::string& arguments, const std::string& words, int exit = 0) {
+    const Ended ended = run("depth " + arguments + " -o nothing --quiet");
+    EXPECT_EQ(ended.exit, exit) << arguments;
+    EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+    EXPECT_NE(ended.err.find(words), std::string::npos) << ended.err;
+  };
+  Image<Rgb8> tiny({8, 8}), dark({160, 120});
+  for (int i = 0; i < 64; ++i) tiny.at(i / 8, i % 8) = {static_cast<std::uint8_t>(i * 37 % 256), 90, 90};
+  ASSERT_TRUE(write_png(tiny, at("tiny.png")) && write_png(dark, at("dark.png")));
+  tiny.at(5, 5) = {255, 255, 255}, dark.at(5, 5) = {9, 9, 9};
+  ASSERT_TRUE(write_png(tiny, at("tiny2.png")) && write_png(dark, at("dark2.png")));
+  expect_line("tiny.png tiny2.png", "pictures of 8x8 pixels are too small");
+  expect_line("dark.png dark2.png", "the pictures are dark");
+  expect_line("left.png right.png --rig rig.json --max-disparity 4", "nearer than what is searched");
+  expect_line("left.png right.png --rig rig.json --far 0.2", "lies farther than --far 0.2");
+  expect_line("tiny.png tiny2.png --rig rig.json", "of another shape", kInput);
+}
+
 TEST_F(RigFitTool, NothingIsCalledMetresWhereNothingIsMetric) {
   const Ended ended = run("depth left.png right.png --rig guess.json -o guessed --json");
   EXPECT_EQ(ended.json()["camera"]["metric"], false);
