@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "trackers/body/behind_back.h"
+#include "trackers/body/hidden_by.h"
 #include "trackers/body/imagined.h"
 
 namespace duo::body {
@@ -196,6 +197,7 @@ void Body::lift(Scene& scene) const {
     if (scene.points[id].inside)
       scene.surfaces[id] =
           surfaces_at(scene.depth, scene.points[id].at_px, std::max(scene.expected[id].p.z, kNear_m), half_window_m(id), range);
+  mark_what_hides(scene);
 }
 
 void Body::update(const FrameView& frame, const Scene& scene, const Choices& chosen) {
@@ -219,7 +221,8 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     state.seen = chosen[id].on_surface && point.inside && std::abs(p.z - chosen[id].p.z) < kFar_off_m &&
                  distance(at, point.at_px) < std::max(kFar_off_px * point.sigma_px, kTooFar_m * frame.depth.px_per_m(p.z));
     inside += point.inside;
-    looked_at += point.inside && frame.is_matched(point.at_px) && !frame.is_covered(point.at_px);
+    looked_at +=
+        point.inside && frame.is_matched(point.at_px) && !frame.is_covered(point.at_px) && !scene.surfaces[id].is_hidden();
     seen += state.seen;
     const bool was_hidden = state.hidden > 2;
     state.shown = !state.seen ? -1 : state.shown < 0 ? 0 : state.shown + ticks;

@@ -159,6 +159,50 @@ TEST(BodyTracker, OfHalfAPersonTheOtherHalfIsNotSeen) {
   }
 }
 
+// A chair 30 cm before the person hides it from a hand's breadth above the hips down.
+TEST(BodyTracker, OfWhoStandsBehindAChairNothingIsSeenOnTheChair) {
+  const RenderedPerson& person = RenderedPerson::get();
+  const auto tracker = body_tracker(person.rig, person.rectified, 1);
+  constexpr double kNearer_m = 0.42, kOff_m = 0.1;  // than the pelvis, which is 12 cm under the skin
+  constexpr int kHalf_px = 45, kAbove_px = 25;
+  const auto truth_of = [&](JointId id, std::size_t i) {
+    for (const SyntheticJoint& joint : person.joints[i])
+      if (joint.id == id) return person.rectified.rig_from_left * joint.p_in_left_m;
+    return Vec3{};
+  };
+  const Vec3 pelvis = truth_of(JointId::kPelvis, 0);
+  const Vec2 at = person.rectified.project(pelvis);
+  const Rectified& geometry = person.rectified;
+  const auto q4 = static_cast<std::uint16_t>(16 * geometry.focal_px * geometry.baseline_m / (pelvis.z - kNearer_m));
+  int above = 0;
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    Frame frame = copy_of(*person.frames[i]);
+    const Window chair =
+        Window{static_cast<int>(at.x) - kHalf_px, static_cast<int>(at.y) - kAbove_px, 2 * kHalf_px, 400}.within(
+            frame.color.size());
+    for (int y = chair.y; y < chair.y_end(); ++y)
+      for (int x = chair.x; x < chair.x_end(); ++x) {
+        const auto grain = static_cast<std::uint8_t>((x * 7 + y * 5) % 11);
+        frame.color.at(y, x) = {static_cast<std::uint8_t>(120 + grain), static_cast<std::uint8_t>(70 + grain), 40};
+        frame.disparity.d_q4.at(y, x) = static_cast<std::uint16_t>(q4 + (x * 7 + y * 3) % 3 - 1);
+      }
+    const auto people = tracker->track(frame);
+    ASSERT_EQ(people.size(), 1u) << i;
+    EXPECT_EQ(people[0].id, 1u);
+    for (const SyntheticJoint& joint : person.joints[i]) {
+      const Joint* found = people[0].find(joint.id);
+      if (found == nullptr || found->state != JointState::kSeen) continue;
+      const Vec3 truth = truth_of(joint.id, i);
+      const Vec2 there = geometry.project(truth);
+      if (!chair.contains(static_cast<int>(there.y), static_cast<int>(there.x)))
+        ++above;
+      else
+        EXPECT_LT(norm(found->p_in_rig_m - truth), kOff_m) << name_of(joint.id) << " in frame " << i;
+    }
+  }
+  EXPECT_GT(above, 5 * kFrames);  // head, shoulders and elbows
+}
+
 /// A frame whose pixels come from where `from` says, with disparities so many times as large.
 template <class From>
 Frame composed(const Frame& source, From from) {

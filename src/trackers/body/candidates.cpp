@@ -120,6 +120,7 @@ double z_sigma_m(const Scene& scene, double z) {
 void add_surfaces(const Scene& scene, JointId id, double most_expected, Candidates& out) {
   bool nearer = false;  // something before the trunk was met
   for (const Surface& surface : scene.surfaces[id].get()) {
+    if (surface.hides) continue;
     Candidate c;
     c.p = on_ray(scene, id, surface.z_m + depth_of_joint_m(scene, id, surface.z_m));
     c.skin_z_m = surface.z_m;

@@ -56,7 +56,7 @@ Surfaces surfaces_at(const DepthView& depth, Vec2 at_px, double z, double half_m
     std::size_t middle = begin;
     while (2 * (sum + samples[middle].weight) < weight) sum += samples[middle++].weight;
     const double share = static_cast<double>(weight) / std::max(total, 1);
-    if (share >= kLeastShare) out.all[out.count++] = {depth.z_m(samples[middle].q4), share};
+    if (share >= kLeastShare) out.all[out.count++] = {depth.z_m(samples[middle].q4), share, false};
     begin = end;
   }
   return out;

@@ -15,6 +15,7 @@ namespace duo::body {
 struct Surface {
   double z_m = 0;
   double share = 0;
+  bool hides = false;  // something that stands before the person
 };
 
 /// Nearest first.
@@ -22,6 +23,8 @@ struct Surfaces {
   std::array<Surface, 4> all = {};
   std::size_t count = 0;
   std::span<const Surface> get() const { return {all.data(), count}; }
+  /// Whether something stands before the person there.
+  bool is_hidden() const { return count > 0 && all[0].hides; }
 };
 
 /// A frame's disparity with its geometry.
