@@ -49,13 +49,6 @@ inline Pair low_texture(bool sharp, unsigned seed) {
   return out;
 }
 
-/// The head of a JPEG whose steps are all `step`: noise of step sqrt(10 / 768) levels.
-inline std::vector<std::uint8_t> coded_by(std::uint8_t step) {
-  std::vector<std::uint8_t> jpeg = {0xff, 0xd8, 0xff, 0xdb, 0, 67, 0};
-  jpeg.insert(jpeg.end(), 64, step);
-  return jpeg;
-}
-
 /// What a user can choose.
 struct Choice {
   const char *matcher, *preset;

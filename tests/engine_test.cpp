@@ -42,21 +42,21 @@ TEST(Engine, RefAndSimdAgreeOnRawPictures) {
   }
 }
 
-// Of either picture; steps of 5, which make 9 sixteenths, change nothing, and none does where pictures are denoised.
+// Of either picture; 9 sixteenths change nothing, and no noise does where pictures are denoised.
 TEST(Engine, CodingNoiseComesWithThePair) {
   Pair pair = test::low_texture(false, 1);
   duo::Setup setup;
   setup.size = pair.left.pixels.size();
   setup.max_disparity = 16;
   const auto reference = prepared("ref", 1, setup), simd = prepared("simd", 2, setup);
-  const auto made = [&](std::uint8_t left_step, std::uint8_t right_step) {
-    pair.left.jpeg = test::coded_by(left_step), pair.right.jpeg = test::coded_by(right_step);
+  const auto made = [&](int left_q4, int right_q4) {
+    pair.left.coding_noise_q4 = left_q4, pair.right.coding_noise_q4 = right_q4;
     Image<std::uint16_t> d_q4 = run(*reference, pair)->disparity.d_q4.clone();
     test::expect_same<std::uint16_t>(d_q4, run(*simd, pair)->disparity.d_q4, "simd");
     return d_q4;
   };
-  const auto uncoded = made(0, 0), left = made(16, 0), right = made(0, 16);
-  test::expect_same<std::uint16_t>(uncoded, made(5, 5), "fine coding");
+  const auto uncoded = made(0, 0), left = made(29, 0), right = made(0, 29);
+  test::expect_same<std::uint16_t>(uncoded, made(9, 9), "fine coding");
   test::expect_same<std::uint16_t>(left, right, "either picture");
   int others = 0;
   for (int y = 0; y < setup.size.height; ++y)
@@ -66,7 +66,7 @@ TEST(Engine, CodingNoiseComesWithThePair) {
     setup.denoise = denoise;
     ASSERT_TRUE(reference->prepare(setup));
     ASSERT_TRUE(simd->prepare(setup));
-    test::expect_same<std::uint16_t>(made(0, 0), made(16, 16), "denoised");
+    test::expect_same<std::uint16_t>(made(0, 0), made(29, 29), "denoised");
   }
 }
 

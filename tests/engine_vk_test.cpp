@@ -138,8 +138,8 @@ TEST(VulkanEngine, SettlesWhatIsClear) {
 TEST(VulkanEngine, TakesTheCodingNoiseOfEachPair) {
   std::vector<Pair> pairs;
   for (unsigned i = 0; i < 3; ++i) pairs.push_back(low_texture(false, i));
-  pairs[0].left.jpeg = test::coded_by(16);
-  pairs[2].right.jpeg = test::coded_by(24);
+  pairs[0].left.coding_noise_q4 = 29;
+  pairs[2].right.coding_noise_q4 = 44;
   duo::Setup setup;
   setup.size = pairs[0].left.pixels.size();
   setup.max_disparity = 16;

@@ -20,6 +20,7 @@ struct Picture {
   TimeNs t_ns = 0;
   std::uint64_t sequence = 0;
   std::vector<std::uint8_t> jpeg = {};  // the same as its camera or file delivered it; empty where that was no JPEG
+  int coding_noise_q4 = 0;  // what coding it as a JPEG left in its brightness, sigma in 1/16 levels; 0: none, or not known
 };
 
 /// Both cameras at one instant; the pictures have the same size.

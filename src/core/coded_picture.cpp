@@ -39,7 +39,7 @@ std::string png(Size size, AVPixelFormat format, CopyRow&& copy_row) {
   if (had_memory(avcodec_send_frame(encoder.get(), frame.get())) < 0 ||
       had_memory(avcodec_receive_packet(encoder.get(), packet.get())) < 0)
     return {};
-  return {reinterpret_cast<const char*>(packet->data), static_cast<std::size_t>(packet->size)};
+  return std::string(av::bytes_of(*packet));
 }
 
 }  // namespace

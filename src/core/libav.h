@@ -11,6 +11,7 @@ extern "C" {
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace duo::av {
@@ -43,6 +44,10 @@ template <class T>
 T* had_memory(T* made) {
   if (made == nullptr) throw std::bad_alloc();
   return made;
+}
+
+inline std::string_view bytes_of(const AVPacket& packet) {
+  return {reinterpret_cast<const char*>(packet.data), static_cast<std::size_t>(packet.size)};
 }
 
 inline std::string reason(int error) {

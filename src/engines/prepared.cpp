@@ -2,7 +2,6 @@
 
 #include "calib/rig_size.h"
 #include "calib/row_offsets.h"
-#include "sources/picture_bytes.h"
 
 #include <fmt/format.h>
 
@@ -64,10 +63,7 @@ MatchSetup match_setup(const Prepared& prepared) {
 
 int coding_noise_q4(const Prepared& prepared, const Pair& pair) {
   if (prepared.median || prepared.gaussian || prepared.diffusion) return 0;
-  const auto of = [](const Picture& picture) {
-    return duo::coding_noise_q4({reinterpret_cast<const char*>(picture.jpeg.data()), picture.jpeg.size()});
-  };
-  return std::max(of(pair.left), of(pair.right));
+  return std::max(pair.left.coding_noise_q4, pair.right.coding_noise_q4);
 }
 
 float focal_baseline_px_mm(const Rectified& geometry) {

@@ -31,8 +31,8 @@ Result<Prepared> prepare_setup(const Setup& setup);
 
 MatchSetup match_setup(const Prepared& prepared);
 
-/// What coding left in the noisier picture, by its JPEG; 0 where that is not known, and where pictures are denoised, which
-/// smooths it, too.
+/// What coding left in the noisier picture, sigma in 1/16 gray levels; 0 where that is not known, and where pictures are
+/// denoised, which smooths it, too.
 int coding_noise_q4(const Prepared& prepared, const Pair& pair);
 
 /// The numerator of depth: focal_px * baseline_mm.

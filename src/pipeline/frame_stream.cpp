@@ -200,8 +200,8 @@ void FrameStream::make_anew(Matched& item) {
     item.pair->left.pixels = shared->left.pixels.clone();
     item.pair->left.t_ns = shared->left.t_ns;
     item.pair->right.t_ns = shared->right.t_ns;
-    item.pair->left.jpeg = shared->left.jpeg;
-    item.pair->right.jpeg = shared->right.jpeg;
+    item.pair->left.coding_noise_q4 = shared->left.coding_noise_q4;
+    item.pair->right.coding_noise_q4 = shared->right.coding_noise_q4;
   }
   submit(item);
   collect(item);

@@ -60,6 +60,7 @@ class Halves final : public FilePairs {
     if (into.pixels.size() != size) into.pixels = Image<Rgb8>(size);
     for (int v = 0; v < size.height; ++v) std::copy_n(picture_.pixels.row(y + v) + x, size.width, into.pixels.row(v));
     into.jpeg.clear();
+    into.coding_noise_q4 = picture_.coding_noise_q4;
     into.t_ns = picture_.t_ns;
     into.sequence = picture_.sequence;
   }

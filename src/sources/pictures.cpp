@@ -135,7 +135,7 @@ class PictureFile final : public FileSource {
   Result<void> open(std::string_view bytes, const std::string& name) {
     DUO_TRY_ASSIGN(frame_, decode(bytes, name));
     orientation_ = orientation_of(bytes);
-    if (is_jpeg(bytes) && orientation_ == Orientation::kTopLeft) jpeg_.assign(bytes.begin(), bytes.end());
+    coding_noise_q4_ = coding_noise_q4(bytes);
     if (const int held = pictures_held(bytes); held > 1)
       warning_ = fmt::format(
           "{} holds {} pictures one after the other: the first is used; save each as a file, or all as a video", name, held);
@@ -162,7 +162,8 @@ class PictureFile final : public FileSource {
     Image<Rgb8> turned;
     put_upright(pixels_, orientation_, turned);
     into.pixels = std::move(pixels_);
-    into.jpeg = std::move(jpeg_);
+    into.jpeg.clear();
+    into.coding_noise_q4 = coding_noise_q4_;
     into.t_ns = 0;
     into.sequence = 0;
     return Next::kNew;
@@ -172,7 +173,7 @@ class PictureFile final : public FileSource {
   av::DecodedFrame frame_;
   av::ToRgb to_rgb_;
   Image<Rgb8> pixels_;
-  std::vector<std::uint8_t> jpeg_;  // empty where its pixels are turned
+  int coding_noise_q4_ = 0;
   Orientation orientation_ = Orientation::kTopLeft;
   Size size_;
   std::optional<ViewLayout> layout_;

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <utility>
 
+#include "sources/picture_bytes.h"
+
 namespace duo {
 namespace {
 
@@ -151,7 +153,11 @@ bool StreamInput::next(Picture& into) {
     if (packet_->stream_index == stream_ && (packet_->flags & AV_PKT_FLAG_CORRUPT) == 0 &&
         avcodec_send_packet(decoder_.get(), packet_.get()) >= 0) {
       into.jpeg.clear();
-      if (decoder_->codec_id == AV_CODEC_ID_MJPEG) into.jpeg.assign(packet_->data, packet_->data + packet_->size);
+      into.coding_noise_q4 = 0;
+      if (decoder_->codec_id == AV_CODEC_ID_MJPEG) {
+        into.jpeg.assign(packet_->data, packet_->data + packet_->size);
+        into.coding_noise_q4 = coding_noise_q4(av::bytes_of(*packet_));
+      }
     }
     av_packet_unref(packet_.get());
   }

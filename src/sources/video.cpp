@@ -17,6 +17,7 @@
 #include "sources/file_source.h"
 #include "sources/libav.h"
 #include "sources/orientation.h"
+#include "sources/picture_bytes.h"
 #include "sources/rising_times.h"
 #include "sources/stereo_layout.h"
 
@@ -363,8 +364,11 @@ Result<Next> VideoFile::next(Picture& into) {
   into.sequence = given_++;
   number_ = packets_ - 1;
   into.jpeg.clear();
-  if (decoder_->codec_id == AV_CODEC_ID_MJPEG && orientation_ == Orientation::kTopLeft)
-    into.jpeg.assign(sent_->data, sent_->data + sent_->size);
+  into.coding_noise_q4 = 0;
+  if (decoder_->codec_id == AV_CODEC_ID_MJPEG) {
+    into.coding_noise_q4 = coding_noise_q4(av::bytes_of(*sent_));
+    if (orientation_ == Orientation::kTopLeft) into.jpeg.assign(sent_->data, sent_->data + sent_->size);
+  }
   if (const auto mark = CaptureMark::of(*sent_)) {
     into.t_ns = mark->t_ns;
     into.sequence = mark->sequence;

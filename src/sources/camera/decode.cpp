@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "sources/picture_bytes.h"
+
 namespace duo {
 namespace {
 
@@ -45,6 +47,7 @@ CameraDecoder::Outcome CameraDecoder::decode_raw(const CameraFormat& format, std
   frame_->linesize[0] = static_cast<int>(stride);
   frame_->linesize[1] = nv12 ? static_cast<int>(stride) : 0;
   into.jpeg.clear();
+  into.coding_noise_q4 = 0;
   return to_rgb_.convert(*frame_, into.pixels) ? Outcome::kWhole : Outcome::kDamaged;
 }
 
@@ -65,6 +68,7 @@ CameraDecoder::Outcome CameraDecoder::decode_jpeg(const CameraFormat& format, st
   }
   if (Size{frame_->width, frame_->height} != format.size) return Outcome::kOtherSize;
   into.jpeg.assign(packet_->data, packet_->data + packet_->size);
+  into.coding_noise_q4 = coding_noise_q4(av::bytes_of(*packet_));
   return to_rgb_.convert(*frame_, into.pixels) ? Outcome::kWhole : Outcome::kDamaged;
 }
 

@@ -12,7 +12,7 @@ struct GrayPair {
   View<const std::uint8_t> left = {}, right = {}, left_inside = {}, right_inside = {};
   std::uint64_t turn = 0;  // which of its stream, from 0
   View<const Rgb8> left_color = {}, right_color = {};
-  int coding_noise_q4 = 0;  // see engines/prepared.h; 0: none, or not known
+  int coding_noise_q4 = 0;  // of the noisier picture, sigma in 1/16 gray levels; 0: none, or not known
   Size size() const { return left.size(); }
   bool masked() const { return !left_inside.empty(); }
 };
