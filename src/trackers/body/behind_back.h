@@ -8,12 +8,13 @@
 
 namespace duo::body {
 
-/// Where the network marks the end of an arm whose wrist is expected behind the trunk on the upper arm, where no wrist can be,
-/// the last place tells more: puts the marks of wrist and hand there.
+/// Puts the marks of wrist and hand at their expected places where the wrist is expected behind the trunk and the network marks
+/// the wrist on the upper arm, where none can be.
 void leave_upper_arm(Scene& scene, const Limb& arm);
 
-/// Where the arm lies on the back, `length` from its elbow, in the direction in which the wrist is marked. None where the
-/// network of hands saw the hand or did not look, or where the back is out of reach.
+/// Where the arm lies on the back, `length` from its elbow, in the direction in which the wrist is marked. The back is taken as
+/// deep as beside the elbow. None where the network of hands saw the hand or did not look, where the wrist is marked within 4
+/// cm of the elbow, where the trunk does not face the cameras, or where the back is out of reach.
 std::optional<Vec3> on_back(const Scene& scene, JointId wrist, Vec3 elbow, double length);
 
 }  // namespace duo::body

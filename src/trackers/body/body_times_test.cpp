@@ -104,6 +104,8 @@ TEST(BodyTimes, TheDoubtOfWhoIsMissedGrowsWithTime) {
 
 // By hand: 0.9 * 0.9; half of a tenth is lost in half a tick. A gain of a half and of a half of what is left; a half of a half.
 TEST(BodyTimes, SharesAndGainsGoByTicks) {
+  EXPECT_DOUBLE_EQ(body::ticks_in(0.0333333333), 1);
+  EXPECT_DOUBLE_EQ(body::ticks_in(1e-6), 1.0 / 64);  // no frame takes no time
   EXPECT_DOUBLE_EQ(body::left_after(1, 0.9), 0.9);
   EXPECT_DOUBLE_EQ(body::left_after(2, 0.9), 0.81);
   EXPECT_DOUBLE_EQ(body::left_after(0.5, 0.9), 0.95);

@@ -348,7 +348,7 @@ void BodyTracker::forget() {
   std::erase_if(tracked_, [&](Tracked& each) {
     const double missed = each.body.missed();
     if (each.trial.is_over()) return missed > kForget;
-    each.trial.add(each.body.seen_share(), each.body.is_flat(), body::ticks_in(setup_.frame_s));
+    each.trial.add(each.body.seen_share(), each.body.is_flat() && !each.covered, body::ticks_in(setup_.frame_s));
     if (!each.trial.is_mistake()) return missed > (each.covered ? kForget : kForgetNew);
     newcomers_.add_mistake(each.body.expected_trunk());
     return true;

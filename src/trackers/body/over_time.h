@@ -1,14 +1,15 @@
 // What happens from frame to frame, by time: the same at any number of frames per second.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace duo::body {
 
 /// The tracker's unit of time, whatever the frames' rate is.
 inline constexpr double kTick_s = 1.0 / 30;
-/// To a 64th: files keep times in whole nanoseconds, and at 30 frames a second a frame is one tick.
-inline double ticks_in(double seconds) { return std::round(64 * seconds / kTick_s) / 64; }
+/// To a 64th, and no less: files keep times in whole nanoseconds, and at 30 frames a second a frame is one tick.
+inline double ticks_in(double seconds) { return std::max(1.0, std::round(64 * seconds / kTick_s)) / 64; }
 
 // Of products alone, as std::pow() need not give the same bits on every processor; a fraction of a tick has its part of that
 // tick's loss or gain.

@@ -38,7 +38,7 @@ struct Scene {
   double width_m() const { return (*lengths)[Bone::kShoulders]; }
   HandSight sight_of(JointId hand_or_wrist) const { return hands[is_left(hand_or_wrist) ? 0 : 1]; }
   /// How far a wrist or hand is behind where it would lie on the back, m. None where it is not behind the trunk, where its
-  /// network sees it or did not look, or where the trunk does not face the cameras.
+  /// network sees it or did not look, or where the trunk does not face the cameras. In behind_back.cpp.
   std::optional<double> off_back_m(JointId id, Vec3 p) const;
 };
 

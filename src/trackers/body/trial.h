@@ -10,7 +10,7 @@ namespace duo::body {
 class Trial {
  public:
   /// What one frame says. `share`: of the joints that it can show, how many are seen; none where it cannot show the person.
-  /// `ticks`: from one frame to the next.
+  /// `ticks`: from one frame to the next at the nominal rate: frames that were left out show nothing.
   void add(std::optional<double> share, bool is_flat, double ticks);
   /// Whether enough was seen to call its joints seen.
   bool is_believed() const { return shown_.ticks >= kBelieve; }
