@@ -27,7 +27,8 @@ enum class RigCheck : std::uint8_t {
   kStrict,  // and next() ends with an error where the verdict is not good
 };
 
-/// Whether frames are matched around the people of frames before and nowhere else, every 16th as a whole.
+/// Whether frames are matched around the people of frames before and nowhere else, every 16th as a whole, every fourth while
+/// nothing is seen of somebody.
 enum class PeopleFocus : std::uint8_t {
   kOff,
   kWherePossible,  // by the CPU, with a tracker that finds people by itself, a matcher that can, and holes left open

@@ -9,6 +9,11 @@ namespace {
 constexpr double kAround_m = 0.25;
 constexpr double kNearest_m = 0.3;  // nobody is tracked nearer
 
+bool is_missed(const Person& person) {
+  const std::span joints(person.joints.data(), person.count());
+  return std::ranges::none_of(joints, [](const Joint& joint) { return joint.state == JointState::kSeen; });
+}
+
 }  // namespace
 
 Focus around(std::span<const Person> people, const Rectified& rectified, double ahead_s) {
@@ -39,10 +44,11 @@ void FocusLine::tell(std::span<const Person> people, TimeNs t_ns) {
   constexpr double kIntervals = 2, kMost_s = 1;  // one until the pair is taken, one until the next comes
   const double interval_s = static_cast<double>(t_ns - last_ns_.value_or(t_ns)) * 1e-9;
   last_ns_ = t_ns;
-  const Focus focus = around(people, rectified_, std::max(ahead_s_, std::min(kIntervals * interval_s, kMost_s)));
+  const Told told = {around(people, rectified_, std::max(ahead_s_, std::min(kIntervals * interval_s, kMost_s))),
+                     std::ranges::any_of(people, is_missed)};
   {
     const std::lock_guard lock(mutex_);
-    ring_[static_cast<std::size_t>(told_++) % ring_.size()] = focus;
+    ring_[static_cast<std::size_t>(told_++) % ring_.size()] = told;
   }
   news_.notify_all();
 }
@@ -53,7 +59,9 @@ Focus FocusLine::next() {
   const std::int64_t pair = asked_++;
   if (pair % kWholeEvery == kFirstWhole || frame < 0) return {};
   news_.wait(lock, [&] { return closed_ || told_ > frame; });
-  return closed_ || pair == whole_pair_ ? Focus() : ring_[static_cast<std::size_t>(frame) % ring_.size()];
+  if (closed_ || pair == whole_pair_) return {};
+  const Told& told = ring_[static_cast<std::size_t>(frame) % ring_.size()];
+  return told.missed && pair % kMissedEvery == 0 ? Focus() : told.focus;
 }
 
 void FocusLine::forget() {

@@ -21,14 +21,14 @@ namespace duo {
 Focus around(std::span<const Person> people, const Rectified& rectified, double ahead_s);
 
 /// Of files, pair n is matched around the people of frame n - kBehind, whatever the threads; of a live source around those of
-/// the newest frame. Every kWholeEvery-th pair is matched as a whole, from number kFirstWhole on: people who come in are found
-/// there.
+/// the newest frame. Every kWholeEvery-th pair is matched as a whole, from number kFirstWhole on, since people who come in are
+/// found there; every kMissedEvery-th while nothing is seen of somebody, who may come back anywhere.
 ///
 /// Threads  one that tells, one that asks, and any that closes
 class FocusLine {
  public:
   static constexpr int kBehind = 3;  // as many pairs are on their way while a frame is tracked
-  static constexpr int kWholeEvery = 16, kFirstWhole = 4;
+  static constexpr int kWholeEvery = 16, kMissedEvery = 4, kFirstWhole = 4;
   FocusLine(const Rectified& rectified, double frame_s, bool live)
       : rectified_(rectified), ahead_s_(kBehind * frame_s), live_(live) {}
 
@@ -47,7 +47,11 @@ class FocusLine {
   const bool live_;
   std::mutex mutex_;  // of what follows
   std::condition_variable news_;
-  std::array<Focus, kBehind + 1> ring_;
+  struct Told {
+    Focus focus;
+    bool missed = false;  // somebody
+  };
+  std::array<Told, kBehind + 1> ring_;
   std::int64_t told_ = 0, asked_ = 0, whole_pair_ = -1;  // whole_pair_: a pair that is matched as a whole
   bool closed_ = false;
   std::optional<TimeNs> last_ns_;  // of who tells

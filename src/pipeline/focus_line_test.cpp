@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <thread>
 
 #include "duoptic/skeleton.h"
@@ -69,6 +70,18 @@ TEST(FocusLine, OfFilesThePairsWaitForTheFrameTheyDependOn) {
   EXPECT_TRUE(line.next().window.empty());  // number 20
   line.close();
   EXPECT_TRUE(line.next().window.empty());  // would wait
+}
+
+TEST(FocusLine, WhoIsMissedIsLookedForEverywhereInEveryFourthPair) {
+  const Person seen = with_head_at({0, 0, 2});
+  Person hidden = with_head_at({0.5, 0, 2});
+  hidden.joints[0].state = JointState::kInferred;
+  FocusLine line(plain_rig(), 1.0 / 30, false);
+  for (int n = 0; n < FocusLine::kBehind; ++n) line.next();
+  for (int n = FocusLine::kBehind; n < FocusLine::kFirstWhole + FocusLine::kWholeEvery; ++n) {
+    line.tell(std::array{seen, hidden}, 0);
+    EXPECT_EQ(line.next().window.empty(), n % FocusLine::kMissedEvery == 0) << n;
+  }
 }
 
 TEST(FocusLine, LiveTheNewestFrameCountsAndNobodyWaits) {
