@@ -163,6 +163,7 @@ class Frames(unittest.TestCase):
                 turns[0] += 1
 
         other = threading.Thread(target=count)
+        self.addCleanup(done.set)  # also where the engine fails
         other.start()
         before = turns[0]
         engine = duoptic.Engine((320, 240), rig=RIG, engine="ref", threads=1)  # slow
