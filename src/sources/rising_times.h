@@ -11,7 +11,7 @@ namespace duo {
 
 /// Mends times that go back: two recordings in one file, a clock that was set. A step back of less than two pictures is
 /// jitter: that picture has the time of the one before. After a longer one times go on from the picture before, at the video's
-/// rate.
+/// rate, unless one of the next eight pictures goes on from before the step: then the times between were wrong.
 class RisingTimes {
  public:
   /// The time of the next picture, which the file says to be `said_ns`; `frame_ns`: from picture to picture.
@@ -24,6 +24,8 @@ class RisingTimes {
  private:
   std::optional<TimeNs> last_ns_;  // as given
   TimeNs later_ns_ = 0;            // than the file says
+  TimeNs before_ns_ = 0;           // later_ns_ before the last step back
+  int since_ = 0;                  // pictures after it
   std::int64_t pictures_ = 0, first_back_ = 0, back_ = 0;
 };
 

@@ -32,6 +32,13 @@ TEST(RisingTimes, JitterHoldsAndAJoinGoesOn) {
   EXPECT_NE(joined.warning("a.mkv").find("go back 3 times, first at picture 3: "), std::string::npos);
 }
 
+// A picture without a time has 0.
+TEST(RisingTimes, AWrongTimeIsWrongForItsPictureAlone) {
+  RisingTimes one, three;
+  EXPECT_EQ(mended(one, {0, 10, 20, 0, 40, 50}), (std::vector<TimeNs>{0, 10, 20, 30, 40, 50}));
+  EXPECT_EQ(mended(three, {0, 10, 20, 0, 0, 0, 60, 70}), (std::vector<TimeNs>{0, 10, 20, 30, 30, 30, 60, 70}));
+}
+
 TEST(RisingTimes, AfterAJumpAnyTimeIsRight) {
   RisingTimes times;
   mended(times, {0, 10, 20});
