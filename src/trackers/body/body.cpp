@@ -205,7 +205,7 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
   constexpr double kLongestStep_m = 0.2;       // per tick
   constexpr double kShown = 1, kUnsurely = 5;  // ticks
   constexpr double kMostOnBack = 12;           // ticks, by which three sigma reach over the whole back
-  int inside = 0, looked_at = 0, seen_there = 0, seen = 0;
+  int inside = 0, looked_at = 0, showing = 0, seen_there = 0, seen = 0;
   ++age_;
   const double ticks = age_ == 1 ? 1 : frame.ticks();  // before the first frame nothing was hidden for long
   const double seen_drift = left_after(ticks, kSeenDrift), hidden_drift = left_after(ticks, kHiddenDrift);
@@ -221,9 +221,9 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     state.seen = chosen[id].on_surface && point.inside && std::abs(p.z - chosen[id].p.z) < kFar_off_m &&
                  distance(at, point.at_px) < std::max(kFar_off_px * point.sigma_px, kTooFar_m * frame.depth.px_per_m(p.z));
     inside += point.inside;
-    const bool can_be_seen =
-        point.inside && frame.is_matched(point.at_px) && !frame.is_covered(point.at_px) && !scene.surfaces[id].is_hidden();
-    looked_at += can_be_seen, seen_there += can_be_seen && state.seen;
+    const bool looked = point.inside && frame.is_matched(point.at_px) && !frame.is_covered(point.at_px);
+    const bool shows = looked && !scene.surfaces[id].is_hidden();
+    looked_at += looked, showing += shows, seen_there += shows && state.seen;
     seen += state.seen;
     const bool was_hidden = state.hidden > 2;
     state.shown = !state.seen ? -1 : state.shown < 0 ? 0 : state.shown + ticks;
@@ -249,7 +249,7 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     if (const double now = norm(state.step); now > longest_m) state.step = (longest_m / now) * state.step;
   }
   seen_share_.reset();
-  if (looked_at > 0 && 2 * looked_at >= inside) seen_share_ = static_cast<double>(seen_there) / looked_at;
+  if (showing > 0 && 2 * looked_at >= inside) seen_share_ = static_cast<double>(seen_there) / showing;
   missed_ = seen > 0 ? 0 : missed_ + ticks;
   learn_pace(ticks);
 }
