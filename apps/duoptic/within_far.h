@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "duoptic/sink.h"
-#include "duoptic/statistics.h"
 
 namespace duo::app {
 
@@ -18,24 +17,29 @@ class WithinFar {
   explicit WithinFar(double far_m) : far_m_(far_m) {}
   void see(const Image<std::uint16_t>& depth_mm) {
     if (far_m_ == kNoFarLimit_m) return;
-    std::vector<double> known_m;
+    pixels_.resize(kDepths);
     for (int y = 0; y < depth_mm.height(); ++y)
-      for (int x = 0; x < depth_mm.width(); ++x)
-        if (depth_mm.at(y, x) > 0) known_m.push_back(1e-3 * depth_mm.at(y, x));
-    known_ += static_cast<double>(known_m.size());
-    within_ += static_cast<double>(std::count_if(known_m.begin(), known_m.end(), [&](double z_m) { return z_m <= far_m_; }));
-    if (!known_m.empty()) nearest_m_ = std::min(nearest_m_, quantile(std::move(known_m), 0.01));
+      for (int x = 0; x < depth_mm.width(); ++x) ++pixels_[depth_mm.at(y, x)];
   }
   std::string warning() const {
-    constexpr double kAlmostNone = 0.01;
-    if (within_ >= kAlmostNone * known_ || known_ == 0) return {};
-    return fmt::format("almost all that was found lies farther than --far {:g} and is left out: the nearest is {:.2f} m away",
-                       far_m_, nearest_m_);
+    constexpr double kAlmostNone = 0.01, kNearest = 0.01;  // of the pixels with a depth
+    std::int64_t known = 0, within = 0;
+    for (std::size_t mm = 1; mm < pixels_.size(); ++mm) {
+      known += pixels_[mm];
+      if (1e-3 * static_cast<double>(mm) <= far_m_) within += pixels_[mm];
+    }
+    if (static_cast<double>(within) >= kAlmostNone * static_cast<double>(known)) return {};
+    std::size_t nearest_mm = 1;
+    for (std::int64_t nearer = pixels_[1]; static_cast<double>(nearer) < kNearest * static_cast<double>(known);)
+      nearer += pixels_[++nearest_mm];
+    return fmt::format("almost all that was found lies farther than --far {:g} and is left out: the nearest is at {:.2f}",
+                       far_m_, 1e-3 * static_cast<double>(nearest_mm));
   }
 
  private:
+  static constexpr std::size_t kDepths = 1 << 16;
   const double far_m_;
-  double known_ = 0, within_ = 0, nearest_m_ = kNoFarLimit_m;
+  std::vector<std::int64_t> pixels_;  // per depth, mm; 0: not known
 };
 
 }  // namespace duo::app

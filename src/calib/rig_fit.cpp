@@ -301,7 +301,7 @@ std::optional<RigFit> RigFitting::by_matches(const SceneMatches& scene) const {
   const auto matches = agreeing_matches(lenses_, scene);
   if (!matches) return {};
   RigFit fit = by_agreeing(scene, *matches);
-  if (!still_ || !fit.what.empty()) return fit;
+  if (!still_ || !fit.what.empty() || (rig_ && !fit.scene)) return fit;  // of a rig that was not judged the rows tell nothing
   fit.what = why_moved(rig_, scene, *matches);
   if (!fit.what.empty()) fit.verdict = RigVerdict::kCanBeImproved;
   return fit;
@@ -336,7 +336,12 @@ std::optional<RigFit> RigFitting::by_first(const std::shared_ptr<const Pair>& pa
 
 RigFit RigFitting::by_all(std::span<const std::shared_ptr<const Pair>> others) {
   // A quick search that found enough in the first finds the same in the others.
-  for (const auto& pair : others) most_ == SceneSearch::kQuick&& judged_ ? matcher_->add_same(*pair) : add(pair);
+  const bool same = most_ == SceneSearch::kQuick && judged_;
+  for (const auto& pair : others)
+    if (same)
+      matcher_->add_same(*pair);
+    else
+      add(pair);
   if (!matcher_ || !last_) return untold(rig_);
   const SceneMatches scene = matcher_->matches();
   if (auto fit = by_matches(scene)) return *fit;

@@ -135,7 +135,7 @@ TEST(RigFitting, PanAndWhatRowsKeepAreOfOnePose) {
   EXPECT_LT(fit.scene->lens_row_px, 0.25);
 }
 
-/// Two photos of a room: a picture on the wall that hangs `down` pixels lower in the right one.
+/// With a mottled square of 120 x 120 pixels.
 Image<Rgb8> with_thing(const Image<Rgb8>& picture, int at_x, int at_y) {
   Image<Rgb8> out = picture.clone();
   std::mt19937 random(9);
@@ -147,6 +147,7 @@ Image<Rgb8> with_thing(const Image<Rgb8>& picture, int at_x, int at_y) {
   return out;
 }
 
+/// A picture on the wall hangs `down` pixels lower in the right photo.
 TEST(RigFitting, WhatMovedBetweenTwoPhotosIsTold) {
   const SyntheticPair ideal = render_synthetic({.seed = 3, .ideal = true}, 2);
   const auto fit_of = [&](int down, bool still, bool with_rig) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 
 namespace duo {
 
@@ -13,7 +15,7 @@ std::string why_other_size(const Rig& rig, Size pictures) {
   std::string how =
       "of another shape, so they were cropped or stretched: calibrate with pictures of this size, or take them "
       "at the rig's";
-  if (across == down)
+  if (std::abs(across - down) <= std::max(of_rig.width, of_rig.height))  // less than a pixel off
     how = fmt::format("the same scaled by {:.3g}: calibrate with pictures of this size, or give them at the rig's",
                       static_cast<double>(pictures.width) / of_rig.width);
   else if (pictures.width == of_rig.height && pictures.height == of_rig.width)

@@ -49,6 +49,7 @@ TEST(Rig, PicturesOfAnotherSizeAreToldByTheirShape) {
   };
   expect_words({1280, 720}, "640x480, these have 1280x720, of another shape, so they were cropped or stretched");
   expect_words({320, 240}, "the same scaled by 0.5");
+  expect_words({427, 320}, "the same scaled by 0.667");  // 426.67
   expect_words({480, 640}, "on their side");
 }
 

@@ -52,14 +52,17 @@ std::string FoundWatch::cause_of(const Pair& pair) const {
                        size.height);
   const View<const Rgb8> views[] = {pair.left.pixels.view(), pair.right.pixels.view()};
   const bool flat[] = {is_flat(views[0]), is_flat(views[1])};
-  const char* const which = flat[0] && flat[1] ? "both pictures" : flat[0] ? "the left picture" : "the right picture";
-  const double level = std::min(mean_level(views[0]), mean_level(views[1]));
-  if (level < kDark)
-    return fmt::format("the pictures are dark, {:.0f} of 255 in the mean: light the scene, expose longer, or uncover the lens",
-                       level);
+  const auto which_of = [](bool left, bool right) {
+    return left && right ? "both pictures" : left ? "the left picture" : "the right picture";
+  };
+  const double levels[] = {mean_level(views[0]), mean_level(views[1])};
+  const bool dark[] = {levels[0] < kDark, levels[1] < kDark};
+  if (dark[0] || dark[1])
+    return fmt::format("{} {} dark, {:.0f} of 255 in the mean: light the scene, expose longer, or uncover the lens",
+                       which_of(dark[0], dark[1]), dark[0] && dark[1] ? "are" : "is", std::min(levels[0], levels[1]));
   if (flat[0] || flat[1])
-    return fmt::format("{} show{} no texture: a blank wall, a covered lens, or one that is out of focus", which,
-                       flat[0] && flat[1] ? "" : "s");
+    return fmt::format("{} show{} no texture: a blank wall, a covered lens, or one that is out of focus",
+                       which_of(flat[0], flat[1]), flat[0] && flat[1] ? "" : "s");
   return {};
 }
 
@@ -74,15 +77,13 @@ std::optional<std::string> FoundWatch::too_near(const Pair& pair) const {
   if (share < kMost) return "";
   constexpr int kStep_px = 16;
   const double nearest_px = quantile(std::move(d_px), kNearest);
-  const int search_px = std::min(kStep_px * (static_cast<int>(nearest_px) / kStep_px + 1), Engine::kMaxDisparity);
-  const auto metres = [&](int px) { return disparity_by_depth_ / px; };
+  const int search_px =
+      kStep_px * (static_cast<int>(std::min<double>(nearest_px, Engine::kMaxDisparity - kStep_px)) / kStep_px + 1);
   const bool metric = disparity_by_depth_ > 0;
   return fmt::format(
       "{:.0f} % of the points that both pictures show are nearer than what is searched, {} px of disparity{}, and depth is "
-      "wrong "
-      "there: give {}--max-disparity {}",
-      100 * share, max_disparity_, metric ? fmt::format(" or {:.2f} m", metres(max_disparity_)) : "",
-      metric ? fmt::format("--near {:.2f} or ", metres(search_px)) : "", search_px);
+      "wrong there: give --max-disparity {}",
+      100 * share, max_disparity_, metric ? fmt::format(" or {:.2f} m", disparity_by_depth_ / max_disparity_) : "", search_px);
 }
 
 void FoundWatch::see(const Frame& frame, const Pair& pair, std::size_t people) {
@@ -92,7 +93,10 @@ void FoundWatch::see(const Frame& frame, const Pair& pair, std::size_t people) {
   if (!on_) return;
   ++counts_.frames;
   counts_.with_people += people > 0;
-  if (!counts_.near && counts_.frames <= kLooks && is_looked_into(counts_.frames)) counts_.near = too_near(pair);
+  if (!counts_.near && counts_.frames <= kLooks && is_looked_into(counts_.frames)) {
+    counts_.near = too_near(pair);
+    counts_.near_frame = counts_.frames - 1;
+  }
   if (!frame.matched.empty() || frame.disparity.origin.empty()) return;
   ++counts_.whole;
   const double known = known_share(frame.disparity.origin);
@@ -104,13 +108,14 @@ std::string FoundWatch::warning(bool cause_told) const {
   const Counts& c = counts_;
   const double known = c.whole > 0 ? c.known / static_cast<double>(c.whole) : 1;
   const bool nothing = known < kNothing;
-  const std::string why = cause_told ? "" : c.near && !c.near->empty() ? *c.near : nothing ? c.cause : "";
+  const auto too_near = [&] { return (c.frames > 1 ? fmt::format("in frame {} ", c.near_frame) : "") + *c.near; };
+  const std::string why = cause_told ? "" : c.near && !c.near->empty() ? too_near() : nothing ? c.cause : "";
   if (people_ && c.with_people == 0 && c.ended)
-    return fmt::format("nobody was found in {} frame{}: {}", c.frames, c.frames == 1 ? "" : "s",
-                       !why.empty()
-                           ? why
-                           : "the networks know no person in the left pictures; people have to be in light, upright, and "
-                             "in the picture from head to hips");
+    return fmt::format("nobody was found in {} frame{}{}{}", c.frames, c.frames == 1 ? "" : "s", cause_told ? "" : ": ",
+                       cause_told     ? ""
+                       : !why.empty() ? why
+                                      : "the networks know no person in the left pictures, or nothing stands out there by its "
+                                        "depth; people have to be in light, upright, and in the picture from head to hips");
   if (!nothing || cause_told) return why;
   return fmt::format("almost nothing was found, {:.1f} % of the pixels have a disparity{}{}", 100 * known,
                      why.empty() ? "" : ": ", why);

@@ -24,7 +24,7 @@ class FoundWatch {
   void end() { counts_.ended = true; }
   /// Another source begins.
   void forget() { counts_ = {}; }
-  /// In one line; empty: enough was found. `cause_told`: what is wrong was said before.
+  /// In one line; empty: enough was found. `cause_told`: it was said that the rig does not fit.
   std::string warning(bool cause_told) const;
 
  private:
@@ -42,6 +42,7 @@ class FoundWatch {
     double known = 0;                      // share of pixels, summed over whole frames
     std::string cause = {};                // of the last frame with little that was looked into
     std::optional<std::string> near = {};  // what is said of a scene that is nearer than what is searched; none: not looked at
+    std::int64_t near_frame = 0;           // of which frame
     bool ended = false;
   };
   Counts counts_;

@@ -226,9 +226,9 @@ Result<Next> Pipeline::next() {
   }
   const std::int64_t begin_ns = wall_ns();
   s.keep(s.tracker->track(*s.last.frame));
-  s.found.see(*s.last.frame, *s.pair, s.people.size());
   if (s.focus) s.focus->tell(s.people, s.last.frame->t_ns);
   s.tracker_ms = static_cast<double>(wall_ns() - begin_ns) * 1e-6;
+  s.found.see(*s.last.frame, *s.pair, s.people.size());
   return next;
 }
 
@@ -389,8 +389,8 @@ std::int64_t Pipeline::dropped() const {
 std::string Pipeline::warning() const {
   const auto& fit = state_->watch.fit();
   std::string all;
-  for (const std::string& one :
-       {state_->source().warning(), state_->pictures.warning(live()), state_->found.warning(fit && !fit->what.empty())})
+  for (const std::string& one : {state_->source().warning(), state_->pictures.warning(live()),
+                                 state_->found.warning(fit && fit->verdict == RigVerdict::kRecalibrate)})
     all += (all.empty() || one.empty() ? "" : "; ") + one;
   return all;
 }

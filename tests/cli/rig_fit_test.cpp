@@ -161,7 +161,7 @@ TEST_F(RigFitTool, WhatFindsNothingSaysWhy) {
   tiny.at(5, 5) = {255, 255, 255}, dark.at(5, 5) = {9, 9, 9};
   ASSERT_TRUE(write_png(tiny, at("tiny2.png")) && write_png(dark, at("dark2.png")));
   expect_line("tiny.png tiny2.png", "pictures of 8x8 pixels are too small");
-  expect_line("dark.png dark2.png", "the pictures are dark");
+  expect_line("dark.png dark2.png", "both pictures are dark");
   expect_line("left.png right.png --rig rig.json --max-disparity 4", "nearer than what is searched");
   expect_line("left.png right.png --rig rig.json --far 0.2", "lies farther than --far 0.2");
   expect_line("tiny.png tiny2.png --rig rig.json", "of another shape", kInput);
