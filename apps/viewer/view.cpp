@@ -305,8 +305,8 @@ Result<Exit> run(Options options, const CLI::App& app) {
   DUO_TRY_ASSIGN(Sidebar sidebar, Sidebar::make(options.player, *player, window->device(), window->scale()));
   const Result<void> shown = Viewer(options, *window, *player, std::move(sidebar)).run();
   DUO_TRY_ASSIGN(const Exit exit, player->finish());
-  if (!player->warning().empty()) say(app, "warning: " + player->warning());
   DUO_TRY(shown);
+  if (!player->warning().empty()) say(app, "warning: " + player->warning());
   return exit;
 }
 
