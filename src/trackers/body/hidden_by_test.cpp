@@ -31,7 +31,7 @@ struct StandsBehind : test::Standing {
 
 TEST(BodyHiddenBy, AChairBeforeSomebodyIsNoLap) {
   StandsBehind s;
-  s.map_of_depth.fill({110, kHips_px - 10, 100, 240}, kNearer_m);
+  s.map_of_depth.fill({110, kHips_px - 10, 100, 240 - (kHips_px - 10)}, kNearer_m);
   s.mark(kNearer_m);
   for (const JointId id : {kLeftHip, kRightHip, kLeftKnee, kRightKnee}) EXPECT_TRUE(s.is_hidden(id)) << name_of(id);
 }
