@@ -30,10 +30,9 @@ void TrackingOptions::add_to(CLI::App& app) {
       "both hands in every frame, not in turn");
   app.add_flag_callback(
       "--focus", [this] { focus = PeopleFocus::kOn; },
-      "Match around people alone, and every 16th frame as a whole: a seventh to a quarter of the CPU time less, joints like "
-      "those\n"
-      "of whole frames but not to the bit. Of the tracker body; the CPU makes the frames. What track does by itself where the\n"
-      "CPU makes the frames and no output holds depth");
+      "Match around people alone, and every 16th frame as a whole, every fourth while nothing is seen of somebody: a seventh\n"
+      "to a quarter of the CPU time less, joints like those of whole frames but not to the bit. Of the tracker body; the CPU\n"
+      "makes the frames. What track does by itself where the CPU makes the frames and no output holds depth");
 }
 
 TrackingOptions TrackingOptions::or_tracker(const char* name) const {
