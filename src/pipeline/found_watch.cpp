@@ -95,7 +95,7 @@ void FoundWatch::see(const Frame& frame, const Pair& pair, std::size_t people) {
   counts_.with_people += people > 0;
   if (!counts_.near && counts_.frames <= kLooks && is_looked_into(counts_.frames)) {
     counts_.near = too_near(pair);
-    counts_.near_frame = counts_.frames - 1;
+    counts_.near_frame = pair.sequence;
   }
   if (!frame.matched.empty() || frame.disparity.origin.empty()) return;
   ++counts_.whole;

@@ -42,7 +42,7 @@ class FoundWatch {
     double known = 0;                      // share of pixels, summed over whole frames
     std::string cause = {};                // of the last frame with little that was looked into
     std::optional<std::string> near = {};  // what is said of a scene that is nearer than what is searched; none: not looked at
-    std::int64_t near_frame = 0;           // of which frame
+    std::uint64_t near_frame = 0;          // of which frame
     bool ended = false;
   };
   Counts counts_;

@@ -60,7 +60,12 @@ TEST(FoundWatch, SaysWhyThereIsAlmostNothing) {
 
 TEST(FoundWatch, TheFirstPicturesMayBeDark) {
   FoundWatch watch({}, {}, false);
-  for (int i = 0; i < 2; ++i) watch.see(frame_with({160, 120}, 0), pair_of_level({160, 120}, 0), 0);
+  const Frame nothing = frame_with({160, 120}, 0);
+  watch.see(nothing, pair_of_level({160, 120}, 0), 0);
+  EXPECT_NE(watch.warning(false).find("dark"), std::string::npos);
+  watch.see(nothing, pair_of_level({160, 120}, 100), 0);
+  EXPECT_EQ(watch.warning(false).find("dark"), std::string::npos);
+  EXPECT_NE(watch.warning(false).find("no texture"), std::string::npos);
   for (int i = 0; i < 8; ++i) watch.see(frame_with({160, 120}, 100), pair_of_level({160, 120}, 100), 0);
   EXPECT_EQ(watch.warning(false), "");
 }
@@ -106,6 +111,16 @@ TEST(FoundWatch, ASceneThatIsTooNearIsTold) {
       << near;
   EXPECT_NE(with_rig.find("4 px of disparity or "), std::string::npos) << with_rig;
   EXPECT_EQ(run(4, false, {{10, 10, 20, 20}}), "");
+  // Of several frames that one is named, by its number in the file.
+  duo::Setup four;
+  four.max_disparity = 4;
+  FoundWatch watch(four, {}, false);
+  Pair pair;
+  pair.left.pixels = room.pair.left.pixels.clone();
+  pair.right.pixels = room.pair.right.pixels.clone();
+  pair.sequence = 30;
+  for (int i = 0; i < 2; ++i) watch.see(frame_with({320, 240}, 320), pair, 0);
+  EXPECT_EQ(watch.warning(false).find("in frame 30 "), 0u) << watch.warning(false);
 }
 
 }  // namespace

@@ -297,6 +297,11 @@ int coding_noise_q4(std::string_view bytes) {
   return static_cast<int>(std::lround(16 * std::sqrt(static_cast<double>(squares) / (12 * 64))));
 }
 
+void put_jpeg(std::string_view bytes, Picture& into) {
+  into.jpeg.assign(bytes.begin(), bytes.end());
+  into.coding_noise_q4 = coding_noise_q4(bytes);
+}
+
 std::string unsupported_in(std::string_view bytes) {
   if (is_jpeg(bytes)) return unsupported_jpeg(bytes);
   if (bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv)) return unsupported_tiff(bytes);

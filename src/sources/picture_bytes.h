@@ -42,6 +42,8 @@ std::optional<ViewLayout> layout_of_jps(std::string_view bytes, bool named_jps);
 ///
 /// Source   ITU-T T.81, A.3.4 (rounding), B.2.4.1 (table)
 int coding_noise_q4(std::string_view bytes);
+/// Gives a picture the bytes of its JPEG and their coding noise; of no bytes, neither.
+void put_jpeg(std::string_view bytes, Picture& into);
 
 /// "" or what the picture has that is not read: an unsupported kind is not a damaged file.
 std::string unsupported_in(std::string_view bytes);

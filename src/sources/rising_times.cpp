@@ -7,12 +7,11 @@
 namespace duo {
 
 TimeNs RisingTimes::next(TimeNs said_ns, TimeNs frame_ns) {
-  constexpr TimeNs kJitter = 2, kFew = 8;  // pictures
-  const auto goes_on_from_before = [&] {
-    const TimeNs t_ns = said_ns + before_ns_;
-    return last_ns_ && later_ns_ != before_ns_ && ++since_ <= kFew && t_ns >= *last_ns_ && t_ns <= *last_ns_ + kFew * frame_ns;
-  };
-  if (goes_on_from_before()) later_ns_ = before_ns_;
+  constexpr int kJitter = 2, kFew = 8;  // pictures
+  if (last_ns_ && later_ns_ != before_ns_ && since_++ < kFew) {
+    const TimeNs from_before_ns = said_ns + before_ns_;
+    if (from_before_ns >= *last_ns_ && from_before_ns <= *last_ns_ + kFew * frame_ns) later_ns_ = before_ns_;
+  }
   TimeNs t_ns = said_ns + later_ns_;
   if (last_ns_ && t_ns < *last_ns_) {
     if (back_++ == 0) first_back_ = pictures_;

@@ -151,14 +151,8 @@ bool StreamInput::next(Picture& into) {
     if (received != AVERROR(EAGAIN)) return false;
     if (av_read_frame(container_.get(), packet_.get()) < 0) return false;
     if (packet_->stream_index == stream_ && (packet_->flags & AV_PKT_FLAG_CORRUPT) == 0 &&
-        avcodec_send_packet(decoder_.get(), packet_.get()) >= 0) {
-      into.jpeg.clear();
-      into.coding_noise_q4 = 0;
-      if (decoder_->codec_id == AV_CODEC_ID_MJPEG) {
-        into.jpeg.assign(packet_->data, packet_->data + packet_->size);
-        into.coding_noise_q4 = coding_noise_q4(av::bytes_of(*packet_));
-      }
-    }
+        avcodec_send_packet(decoder_.get(), packet_.get()) >= 0)
+      put_jpeg(decoder_->codec_id == AV_CODEC_ID_MJPEG ? av::bytes_of(*packet_) : std::string_view(), into);
     av_packet_unref(packet_.get());
   }
 }

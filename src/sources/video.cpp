@@ -363,12 +363,8 @@ Result<Next> VideoFile::next(Picture& into) {
   into.t_ns = av::to_ns(frame_->best_effort_timestamp, stream().time_base);
   into.sequence = given_++;
   number_ = packets_ - 1;
-  into.jpeg.clear();
-  into.coding_noise_q4 = 0;
-  if (decoder_->codec_id == AV_CODEC_ID_MJPEG) {
-    into.coding_noise_q4 = coding_noise_q4(av::bytes_of(*sent_));
-    if (orientation_ == Orientation::kTopLeft) into.jpeg.assign(sent_->data, sent_->data + sent_->size);
-  }
+  put_jpeg(decoder_->codec_id == AV_CODEC_ID_MJPEG ? av::bytes_of(*sent_) : std::string_view(), into);
+  if (orientation_ != Orientation::kTopLeft) into.jpeg.clear();  // the pixels are turned
   if (const auto mark = CaptureMark::of(*sent_)) {
     into.t_ns = mark->t_ns;
     into.sequence = mark->sequence;

@@ -46,8 +46,7 @@ CameraDecoder::Outcome CameraDecoder::decode_raw(const CameraFormat& format, std
   frame_->data[1] = nv12 ? frame_->data[0] + stride * height : nullptr;
   frame_->linesize[0] = static_cast<int>(stride);
   frame_->linesize[1] = nv12 ? static_cast<int>(stride) : 0;
-  into.jpeg.clear();
-  into.coding_noise_q4 = 0;
+  put_jpeg({}, into);
   return to_rgb_.convert(*frame_, into.pixels) ? Outcome::kWhole : Outcome::kDamaged;
 }
 
@@ -67,8 +66,7 @@ CameraDecoder::Outcome CameraDecoder::decode_jpeg(const CameraFormat& format, st
     return Outcome::kDamaged;
   }
   if (Size{frame_->width, frame_->height} != format.size) return Outcome::kOtherSize;
-  into.jpeg.assign(packet_->data, packet_->data + packet_->size);
-  into.coding_noise_q4 = coding_noise_q4(av::bytes_of(*packet_));
+  put_jpeg(av::bytes_of(*packet_), into);
   return to_rgb_.convert(*frame_, into.pixels) ? Outcome::kWhole : Outcome::kDamaged;
 }
 

@@ -60,10 +60,10 @@ Vec3 Body::expected_trunk() const {
 }
 
 void Body::stretch_step(double times) {
-  constexpr double kLongestStep_m = 0.2;  // of what is stretched: nobody knows where it goes meanwhile
-  if (age_ < 2) return;                   // one frame shows no speed
+  constexpr double kLongestStretched_m = 0.2;  // nobody knows where it goes meanwhile
+  if (age_ < 2) return;                        // one frame shows no speed
   const auto stretched = [&](Vec3 step) {
-    const double now = times * norm(step), most = std::max(kLongestStep_m, norm(step));
+    const double now = times * norm(step), most = std::max(kLongestStretched_m, norm(step));
     return (now > most ? most / now * times : times) * step;
   };
   pace_ = stretched(pace_);

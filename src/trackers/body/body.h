@@ -44,8 +44,9 @@ class Body {
   const Lengths& lengths() const { return lengths_; }
   /// Ticks since anything was seen of the person.
   double missed() const { return missed_; }
-  /// Of the joints that are marked in the picture, where depth was looked for and nobody stands before them, how many the last
-  /// frame showed. None where the person was not looked at, or where these are less than half of them.
+  /// Of the joints that the last frame could show, the share that it did: marked in the picture, where depth was looked for and
+  /// neither somebody nor something stands before them. None where it could show none, where the person was not looked at, or
+  /// where depth was looked for, nobody being before, at less than half of the marked ones.
   std::optional<double> seen_share() const { return seen_share_; }
   /// Whether the trunk did not stand out of what is beside it when it was tracked last, as a picture on a wall does not.
   bool is_flat() const { return is_flat_; }
