@@ -22,6 +22,12 @@ bool is_end_on(const Places& places, const Limb& arm, const Lengths& lengths) {
   return places[arm[2]].z - places[arm[1]].z > kAway * lengths[Bone::kForearm];
 }
 
+/// Whether a thigh points at the cameras, as that of somebody who sits, so that it hides its hip.
+bool is_behind_thigh(const Places& places, const Limb& leg, const Lengths& lengths) {
+  constexpr double kTowards = 0.5;
+  return places[leg[0]].z - places[leg[1]].z > kTowards * lengths[Bone::kThigh];
+}
+
 /// A hand that its network found far from where the body's network has it is another one.
 bool belongs(const SeenHand& hand, const Point& wrist, double px_per_m) {
   constexpr double kNear_hand_m = 0.12;
@@ -39,7 +45,7 @@ std::optional<Body> Body::start(const FrameView& frame, const SeenBody& seen) {
   // How large the person is: the trunk as it is seen beside the trunk as the network imagines it.
   const Lengths adult;
   const double px_per_m = frame.depth.px_per_m(z + kBehind_m);
-  const Points points = points_of(seen, frame.model, frame.picture.size(), px_per_m, adult[Bone::kShoulders]);
+  const Points points = points_of(seen, frame.model, frame.picture.size(), px_per_m, adult[Bone::kShoulders], 0, 0);
   const auto at = [&](JointId id) { return points[id].at_px; };
   const double trunk_px = distance(mean(at(JointId::kLeftShoulder), at(JointId::kRightShoulder)),
                                    mean(at(JointId::kLeftHip), at(JointId::kRightHip)));
@@ -107,7 +113,10 @@ void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hand
   scene.nearer = nearer;
 
   predict(scene, frame.ticks());
-  if (missed_ > 0) sides_.forget();
+  if (missed_ > 0) {
+    sides_.forget();
+    leg_sides_.forget();
+  }
   const bool exchanged = sides_.are_exchanged(seen, expected_corners(scene), frame.ticks());
   const Hands own = exchanged ? Hands{{hands.seen[1], hands.seen[0]}} : hands;
   own_hands_ = own.seen;
@@ -117,7 +126,7 @@ void Body::track(const FrameView& frame, const SeenBody& seen, const Hands& hand
   sample_limbs(scene, chosen, samples_);
   fit_.run(scene, chosen, samples_, fitted_);
   update(frame, scene, chosen);
-  learn(scene, frame.ticks());
+  learn(frame, scene);
 }
 
 void Body::predict(Scene& scene, double ticks) const {
@@ -150,6 +159,7 @@ void Body::predict(Scene& scene, double ticks) const {
 
 void Body::detect(const FrameView& frame, const SeenBody& seen, const Hands& hands, Scene& scene) {
   constexpr double kMostStep_m = 0.06, kGate_m = 0.35;
+  constexpr double kAhead = 0.07;  // of the shoulders' width
   const double found =
       trunk_depth(frame.depth, corners_of(seen), {std::max(trunk_z_m_ - kGate_m, kNear_m), trunk_z_m_ + kGate_m});
   const double most_m = kMostStep_m * (frame.ticks() + missed_);
@@ -160,10 +170,13 @@ void Body::detect(const FrameView& frame, const SeenBody& seen, const Hands& han
   region_from_px_ = centre_of(corners_of(seen));
   color_.learn(color_of(frame, corners_of(seen)), frame.ticks());
   const double px_per_m = frame.depth.px_per_m(trunk_z_m_);
-  scene.points = points_of(seen, frame.model, frame.picture.size(), px_per_m, lengths_[Bone::kShoulders]);
+  scene.across = across_of(seen, expected_trunk());
+  // From the side hips and head are marked ahead of their centres.
+  const double width_m = lengths_[Bone::kShoulders], ahead_m = kAhead * width_m * scene.across.shoulders.z;
+  scene.points = points_of(seen, frame.model, frame.picture.size(), px_per_m, width_m, ahead_m, hip_mark_.low_m());
+  leg_sides_.put_right(scene, frame.ticks());
   for (const JointId id : kFreeJoints)
     if (frame.is_covered(scene.points[id].at_px)) scene.points[id].hide();
-  scene.across = across_of(seen, expected_trunk());
   for (const bool left : {true, false}) detect_hand(frame, hands.seen[left ? 0 : 1], left, scene);
   Places expected = fitted_.places;
   for (const JointId id : kFreeJoints) expected[id] = scene.expected[id].p;
@@ -216,8 +229,9 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     const Vec2 at = frame.depth.geometry->project(p);
     const Point& point = scene.points[id];
     const std::size_t side = is_left(id) ? 0 : 1;
-    const bool hidden_by_arm =
-        is_hand_or_wrist(id) && scene.hands[side] != HandSight::kSeen && is_end_on(fitted_.places, kArmChains[side], lengths_);
+    const bool hidden_by_limb = (is_hand_or_wrist(id) && scene.hands[side] != HandSight::kSeen &&
+                                 is_end_on(fitted_.places, kArmChains[side], lengths_)) ||
+                                (is_hip(id) && is_behind_thigh(fitted_.places, kLegChains[side], lengths_));
     state.seen = chosen[id].on_surface && point.inside && std::abs(p.z - chosen[id].p.z) < kFar_off_m &&
                  distance(at, point.at_px) < std::max(kFar_off_px * point.sigma_px, kTooFar_m * frame.depth.px_per_m(p.z));
     inside += point.inside;
@@ -233,7 +247,7 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
     const bool on_back = scene.off_back_m(id, p).has_value();
     const double enough = sight == HandSight::kSeen ? kShown : kUnsurely;
     const bool believed = state.sure || age_ == 1 || (sight != HandSight::kAbsent && state.shown >= enough);
-    state.sure = state.seen && !hidden_by_arm && !on_back && believed && frame.shows(point.at_px) && frame.shows(at);
+    state.sure = state.seen && !hidden_by_limb && !on_back && believed && frame.shows(point.at_px) && frame.shows(at);
     state.absent = sight == HandSight::kAbsent;
     state.hidden = state.seen ? 0 : state.hidden + ticks;
     state.astray = state.seen ? 0 : state.astray + ticks;
@@ -252,59 +266,6 @@ void Body::update(const FrameView& frame, const Scene& scene, const Choices& cho
   if (showing > 0 && 2 * looked_at >= inside) seen_share_ = static_cast<double>(seen_there) / showing;
   missed_ = seen > 0 ? 0 : missed_ + ticks;
   learn_pace(ticks);
-}
-
-void Body::learn_pace(double ticks) {
-  using enum JointId;
-  constexpr double kGain = 0.2;  // per tick
-  Vec3 sum;
-  int count = 0;
-  for (const JointId id : {kLeftShoulder, kRightShoulder, kLeftHip, kRightHip})
-    if (states_[id].seen) {
-      sum = sum + states_[id].step;
-      ++count;
-    }
-  const double gain = gain_over(ticks, kGain);
-  if (count > 1) pace_ = (1 - gain) * pace_ + (gain / count) * sum;
-}
-
-void Body::learn(const Scene& scene, double ticks) {
-  using enum JointId;
-  constexpr double kFacing = 0.7;  // of the width: turned by less than 45 degrees
-  const auto seen = [&](JointId id) { return states_[id].seen; };
-  const auto measured = [&](JointId id) {
-    return scene.depth.geometry->unproject(scene.points[id].at_px, fitted_.places[id].z);
-  };
-  const auto take = [&](JointId a, JointId b, Bone bone) {
-    if (!seen(a) || !seen(b)) return;
-    const Vec3 way = measured(b) - measured(a);
-    const double measured_m = std::max(norm(way), 1e-6), across = std::sqrt(square(way.x) + square(way.y)) / measured_m;
-    const double weight = square(across) * std::min(scene.points[a].visibility, scene.points[b].visibility);
-    if (across > 0.5) lengths_.learn(bone, measured_m, weight);
-  };
-  for (const Limb& arm : kArmChains) {
-    take(arm[0], arm[1], Bone::kUpperArm);
-    take(arm[1], arm[2], Bone::kForearm);
-    take(arm[2], arm[3], Bone::kPalm);
-  }
-  for (const Limb& leg : kLegChains) {
-    take(leg[0], leg[1], Bone::kThigh);
-    take(leg[1], leg[2], Bone::kShin);
-    take(leg[2], leg[3], Bone::kFoot);
-  }
-  if (std::abs(scene.across.shoulders.z) < kFacing) take(kLeftShoulder, kRightShoulder, Bone::kShoulders);
-  if (std::abs(scene.across.hips.z) < kFacing) take(kLeftHip, kRightHip, Bone::kHips);
-  if (seen(kLeftShoulder) && seen(kRightShoulder) && seen(kLeftHip) && seen(kRightHip)) {
-    const Vec3 shoulders = middle(measured(kLeftShoulder), measured(kRightShoulder)),
-               hips = middle(measured(kLeftHip), measured(kRightHip));
-    lengths_.learn(Bone::kTrunk, distance(shoulders, hips), 1);
-    if (seen(kHead)) {
-      lengths_.learn(Bone::kNeckHead, distance(shoulders, measured(kHead)), 1);
-      lengths_.learn(Bone::kHead, distance(fitted_.places[kNeck], fitted_.places[kHead]), 1);
-    }
-    if (std::abs(scene.across.shoulders.z) < kFacing)
-      map_.learn(scene.depth, trunk_axes(fitted_.places), fitted_.places, ticks);
-  }
 }
 
 // Who walks behind somebody walks on.

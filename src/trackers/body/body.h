@@ -79,9 +79,10 @@ class Body {
   void detect_hand(const FrameView& frame, const SeenHand* hand, bool left, Scene& scene);
   void lift(Scene& scene) const;
   void update(const FrameView& frame, const Scene& scene, const Choices& chosen);
-  void learn(const Scene& scene, double ticks);
+  void learn(const FrameView& frame, const Scene& scene);
 
   Lengths lengths_;
+  HipMark hip_mark_;
   SurfaceMap map_;
   Fitted fitted_;
   PerJoint<State> states_;
@@ -100,6 +101,7 @@ class Body {
   int age_ = 0;
   bool is_flat_ = false;
   Sides sides_;
+  LegSides leg_sides_;
 };
 
 }  // namespace duo::body

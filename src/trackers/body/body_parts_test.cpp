@@ -73,6 +73,29 @@ TEST(BodyLengths, AreKeptUntilTheyAreWrong) {
   EXPECT_GT(lengths.kept(Bone::kShin), kept + 0.008);
 }
 
+TEST(BodyLengths, WhatWasMeasuredTooShortIsLengthened) {
+  Lengths late, early;
+  const double adult = late[Bone::kTrunk];
+  for (int i = 0; i < 50; ++i) late.learn(Bone::kTrunk, adult + 0.02, 1), early.learn(Bone::kTrunk, adult, 1);
+  early.lengthen(Bone::kTrunk, 0.02);
+  EXPECT_NEAR(early[Bone::kTrunk], late[Bone::kTrunk], 1e-6);
+  late.learn(Bone::kTrunk, adult + 0.02, 1), early.learn(Bone::kTrunk, adult + 0.02, 1);
+  EXPECT_NEAR(early[Bone::kTrunk], late[Bone::kTrunk], 1e-6);
+}
+
+TEST(BodyLengths, TrunkAndThighTellHowLowHipsAreMarked) {
+  // An adult's trunk and thigh, 0.465 and 0.405 m, between hips that are marked 3 cm too low; the marks go up meanwhile.
+  HipMark mark;
+  for (int i = 0; i < 200; ++i) mark.learn(0.465 + 0.03 - mark.low_m(), 0.405 - 0.03 + mark.low_m());
+  EXPECT_NEAR(mark.low_m(), 0.85 * 0.03 * 200 / 206, 1e-9);
+  // Nor does it move for another size of the same person, or without end.
+  HipMark child, other;
+  for (int i = 0; i < 200; ++i) child.learn(0.7 * 0.465, 0.7 * 0.405);
+  EXPECT_NEAR(child.low_m(), 0, 1e-9);
+  for (int i = 0; i < 200; ++i) other.learn(0.3, 0.5);
+  EXPECT_EQ(other.low_m(), -0.04);
+}
+
 TEST(BodyEquations, TwoPointsAtADistanceByHand) {
   // Point 0 is at 0 and held there with sigma 1; point 1 at 3 on x, held with sigma 1; the distance should be 1 with sigma 1/2.
   // x0² + (x1 - 3)² + 4 (x1 - x0 - 1)²: x0 = 8/9, x1 = 19/9.
@@ -114,7 +137,10 @@ SeenBody upright(Vec2 middle_px, double px_per_m) {
 }
 
 TEST(BodyPoints, JointsLieBesideTheMarks) {
-  const Points points = points_of(upright({100, 100}, 100), BodyModel::kLite, {320, 240}, 100, 0.4);
+  const auto points_with = [](double ahead_m, double hips_low_m) {
+    return points_of(upright({100, 100}, 100), BodyModel::kLite, {320, 240}, 100, 0.4, ahead_m, hips_low_m);
+  };
+  const Points points = points_with(0, 0);
   // Down the trunk by 0.053 of 0.4 m at 100 px a metre, outwards by 0.033 of the 40 px between the shoulders.
   EXPECT_NEAR(points[kLeftShoulder].at_px.y, 60 + 2.12, 0.01);
   EXPECT_NEAR(points[kLeftShoulder].at_px.x, 120 + 1.32, 0.01);
@@ -122,6 +148,13 @@ TEST(BodyPoints, JointsLieBesideTheMarks) {
   EXPECT_NEAR(points[kLeftHip].at_px.y, 110 - 3.4, 0.01);
   EXPECT_NEAR(points[kLeftShoulder].sigma_px, 1.5, 1e-9);
   EXPECT_TRUE(points[kLeftShoulder].inside);
+  // What is marked 3 cm too far to the right and 2 cm too low goes back by 3 and 2 px; only hips are marked too low.
+  const Points back = points_with(0.03, 0.02);
+  EXPECT_NEAR(back[kLeftHip].at_px.x, points[kLeftHip].at_px.x - 3, 0.01);
+  EXPECT_NEAR(back[kRightHip].at_px.y, points[kRightHip].at_px.y - 2, 0.01);
+  EXPECT_NEAR(back[kHead].at_px.x, points[kHead].at_px.x - 3, 0.01);
+  EXPECT_NEAR(back[kHead].at_px.y, points[kHead].at_px.y, 0.01);
+  EXPECT_EQ(back[kLeftShoulder].at_px.x, points[kLeftShoulder].at_px.x);
 }
 
 TEST(BodyTrunk, SidesAreExchangedWhereTheOtherSidesAreExpected) {
@@ -197,6 +230,20 @@ TEST(BodyFit, PointsAndDepthGiveTheBodyBack) {
     EXPECT_GT(fitted.covariance[id].sigma_m(), 0.005) << name_of(id);
     EXPECT_LT(fitted.covariance[id].sigma_m(), 0.06) << name_of(id);
   }
+}
+
+TEST(BodyFit, WhatLeapsIsNotHeldWhereItWasExpected) {
+  // The head is seen 25 cm nearer than expected, eight sigmas, with nothing wrong with what is seen.
+  Places places = standing();
+  for (const JointId id : kFreeJoints) places[id].z -= 0.25;
+  Standing s(places);
+  s.scene.expected[kHead].p.z += 0.25;
+  Choices chosen;
+  choose(s.scene, chosen);
+  chosen[kHead] = {places[kHead], true, 0.02};
+  Fitted fitted;
+  Fit().run(s.scene, chosen, {}, fitted);
+  EXPECT_LT(distance(fitted.places[kHead], places[kHead]), 0.03);
 }
 
 TEST(BodyFit, BonesHoldAHiddenJoint) {

@@ -1,6 +1,8 @@
 // Where the network of bodies takes left for right, by hand: when its marks are exchanged, and when they must not be.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "trackers/body/body.h"
 #include "trackers/body/standing.h"
 
@@ -81,6 +83,41 @@ TEST(BodySides, AreNotExchangedWhereFramesAreFarApart) {
 }
 
 TEST(BodySides, OfWhoShowsTheFaceAreNotExchanged) { EXPECT_EQ(exchanged(20, 20, 1, true), 0); }
+
+/// How many of `frames` that take one leg for the other are put right, after some that do not.
+int legs_put_right(int agreed, int frames, double apart_m, double ticks = 1) {
+  Places places = standing();
+  for (const Limb& leg : kLegChains)
+    for (const std::size_t n : {1, 2, 3}) places[leg[n]].x = (is_left(leg[n]) ? 0.5 : -0.5) * apart_m;
+  const Standing right(places);
+  LegSides sides;
+  int count = 0;
+  for (int i = 0; i < agreed + frames; ++i) {
+    Scene scene = right.scene;
+    if (i >= agreed)
+      for (const std::size_t n : {1, 2, 3}) std::swap(scene.points[kLegChains[0][n]], scene.points[kLegChains[1][n]]);
+    const double before = scene.points[kLeftKnee].at_px.x;
+    sides.put_right(scene, ticks);
+    const bool swapped = scene.points[kLeftKnee].at_px.x != before;
+    EXPECT_TRUE(i >= agreed || !swapped);
+    if (swapped) {
+      for (const JointId id : {kLeftKnee, kRightAnkle, kLeftFoot}) {
+        EXPECT_EQ(scene.points[id].at_px.x, right.scene.points[id].at_px.x);
+      }
+    }
+    count += swapped ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(BodySides, LegsArePutRightForFourTicksAfterFramesThatAgree) {
+  EXPECT_EQ(legs_put_right(3, 2, 0.4), 2);
+  EXPECT_EQ(legs_put_right(3, 20, 0.4), 4);
+  EXPECT_EQ(legs_put_right(2, 20, 0.4), 0);
+  EXPECT_EQ(legs_put_right(3, 20, 0.4, 0.5), 8);  // 60 frames per second
+  EXPECT_EQ(legs_put_right(3, 20, 0.4, 3), 0);    // 10: legs pass each other in a step
+  EXPECT_EQ(legs_put_right(3, 20, 0.06), 0);      // they pass each other now
+}
 
 /// A hand in the picture whose network is sure of it, at the marks of the left or right wrist and knuckles.
 SeenHand hand_at(const SeenBody& marks, bool left) {

@@ -168,7 +168,7 @@ double depth_of_joint_m(JointId id, double width_m, double away) {
       return 0.185 * width_m + 0.045 * away;
     case kLeftHip:
     case kRightHip:
-      return 0.37 * width_m + 0.03 * away;
+      return 0.34 * width_m + 0.03 * away;
     case kHead:
       return 0.109;
     case kLeftElbow:
@@ -192,8 +192,10 @@ double depth_of_joint_m(JointId id, double width_m, double away) {
 }
 
 double depth_of_joint_m(const Scene& scene, JointId id, double skin_z) {
+  constexpr double kHeadFlat_m = 0.02;  // nearer to its skin from the side
   const double line = is_hip(id) ? scene.across.hips.z : scene.across.shoulders.z;
-  const double behind = depth_of_joint_m(id, scene.width_m(), is_left(id) ? line : -line);
+  double behind = depth_of_joint_m(id, scene.width_m(), is_left(id) ? line : -line);
+  if (id == JointId::kHead) behind -= kHeadFlat_m * square(line);
   return is_hip(id) || is_shoulder(id) ? behind : behind - DepthView::kThin_px * scene.depth.m_per_px(skin_z);
 }
 

@@ -11,6 +11,7 @@ constexpr int kSteps = 6;
 constexpr double kCauchy = 2;
 constexpr double kHiddenPoint = 4, kOutsidePoint = 2;  // a point's sigma grows by this
 constexpr double kGoesIn_m = 0.12;                     // from there to a hidden wrist or hand, one standard deviation
+constexpr double kLeap = 2;                            // times Cauchy's scale: where a joint on a surface was expected
 constexpr double kBoneSigma_m = 0.012, kTrunkSigma_m = 0.02;
 
 constexpr std::array<std::size_t, kJoints> free_index() {
@@ -115,9 +116,10 @@ class Terms {
     const Expected& expected = scene_.expected[id];
     const double s = 1 / expected.sigma_m;
     const Vec3 off = now_[id] - expected.p;
-    add(s * off.x, {{at(id), {s, 0, 0}}});
-    add(s * off.y, {{at(id), {0, s, 0}}});
-    add(s * off.z, {{at(id), {0, 0, s}}});
+    const double weight = chosen_[id].on_surface ? cauchy(s * norm(off) / kLeap) : 1;
+    add(s * off.x, {{at(id), {s, 0, 0}}}, weight);
+    add(s * off.y, {{at(id), {0, s, 0}}}, weight);
+    add(s * off.z, {{at(id), {0, 0, s}}}, weight);
   }
 
   /// A hidden joint near where it was guessed.
@@ -235,7 +237,6 @@ Places with_lengths(const Places& places, const Lengths& lengths) {
 // angle to the hips, and the neck the chest to the shoulders.
 void complete(Places& places) {
   using enum JointId;
-  constexpr double kNeckAbove = 0.225;  // of the trunk's length
   constexpr double kNeckBehind_m = 0.022;
   const auto across = [&](JointId left, JointId right, Vec3 way) {
     const Vec3 line = places[left] - places[right];

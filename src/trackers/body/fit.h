@@ -32,6 +32,8 @@ class Fit {
 /// trunk its middle.
 Places with_lengths(const Places& places, const Lengths& lengths);
 
+inline constexpr double kNeckAbove = 0.225;  // the chest, of the trunk's length
+
 /// Pelvis, spine, chest and neck from shoulders and hips.
 void complete(Places& places);
 

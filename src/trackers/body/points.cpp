@@ -1,6 +1,7 @@
 #include "trackers/body/points.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace duo::body {
 namespace {
@@ -53,7 +54,8 @@ double half_side_px(const SeenBody& body) {
 
 }  // namespace
 
-Points points_of(const SeenBody& body, BodyModel model, Size picture, double px_per_m, double shoulder_width_m) {
+Points points_of(const SeenBody& body, BodyModel model, Size picture, double px_per_m, double shoulder_width_m, double ahead_m,
+                 double hips_low_m) {
   const Offsets& offsets = model == BodyModel::kLite ? kLiteOffsets : kFullOffsets;
   using enum BodyPoint;
   const double crop_px = std::max(2 * half_side_px(body) / kCropSide_px, 0.25);
@@ -87,10 +89,14 @@ Points points_of(const SeenBody& body, BodyModel model, Size picture, double px_
   };
   shift(JointId::kLeftShoulder, offsets.shoulder, to_left);
   shift(JointId::kRightShoulder, offsets.shoulder, to_right);
-  shift(JointId::kLeftHip, offsets.hip, to_left);
-  shift(JointId::kRightHip, offsets.hip, to_right);
+  const double ahead = ahead_m / shoulder_width_m;
+  const auto moved_back = [&](Vec2 place) { return Vec2{place.x - ahead * down.y, place.y + ahead * down.x}; };
+  for (const auto& [hip, outwards] : {std::pair{JointId::kLeftHip, to_left}, std::pair{JointId::kRightHip, to_right}}) {
+    const Offset offset = {offsets.hip.down - hips_low_m / shoulder_width_m, offsets.hip.out};
+    put(hip, moved_back(moved(out[hip].at_px, offset, outwards)), out[hip].visibility);
+  }
   const SeenPoint &left_ear = body.at(kLeftEar), &right_ear = body.at(kRightEar);
-  put(JointId::kHead, moved(mean(at(left_ear), at(right_ear)), offsets.head, {}),
+  put(JointId::kHead, moved_back(moved(mean(at(left_ear), at(right_ear)), offsets.head, {})),
       std::max(left_ear.visibility(), right_ear.visibility()));
 
   // The middle of wrist and three knuckles is steadier than any of them.

@@ -31,9 +31,13 @@ using Points = PerJoint<Point>;
 /// on the bone that shows. Joint centres, as skeletons have them, lie beside, in widths of the
 /// shoulders.
 ///
+/// `ahead_m`: how far hips and head are marked off in this frame, across the trunk to the right of the picture; `hips_low_m`:
+/// how far this person's hips are, down along it.
+///
 /// Shape   pelvis, spine, chest and neck have none
 /// Source  the offsets: means over pictures of four rendered people whose joints are those of their skeleton
-Points points_of(const SeenBody& body, BodyModel model, Size picture, double px_per_m, double shoulder_width_m);
+Points points_of(const SeenBody& body, BodyModel model, Size picture, double px_per_m, double shoulder_width_m, double ahead_m,
+                 double hips_low_m);
 
 /// How far the hand's network moved hand and wrist from where the body's network has them.
 ///
