@@ -7,7 +7,7 @@
 #include "core/check.h"
 #include "sources/camera/decode.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_camera(const std::uint8_t* data, std::size_t size) {
   using duo::CameraDecoder;
   constexpr std::size_t kHead = 6, kRoom = 1 << 20, kPage = 4096;
   static auto* const room = [] {

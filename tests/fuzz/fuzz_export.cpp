@@ -15,7 +15,7 @@
 #include "duoptic/source.h"
 #include "sources/video.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_export(const std::uint8_t* data, std::size_t size) {
   namespace fs = std::filesystem;
   static const int file = [] {
     av_log_set_level(AV_LOG_QUIET);

@@ -4,7 +4,7 @@
 
 #include "tests/fuzz/accepted_rig.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_kalibr(const std::uint8_t* data, std::size_t size) {
   const auto rig = duo::parse_rig({reinterpret_cast<const char*>(data), size}, "fuzz");
   if (!rig) return 0;
   duo::fuzz::check_accepted(*rig);

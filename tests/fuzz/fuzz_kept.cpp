@@ -9,7 +9,7 @@
 #include "core/check.h"
 #include "vulkan/pipeline_cache.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_kept(const std::uint8_t* data, std::size_t size) {
   static const std::filesystem::path folder = [] {
     std::string name = (std::filesystem::temp_directory_path() / "duoptic_fuzz_XXXXXX").string();
     DUO_CHECK(mkdtemp(name.data()) != nullptr);

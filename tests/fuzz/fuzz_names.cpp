@@ -33,7 +33,7 @@ static void read_clicks(const std::string& text) {
   }
 }
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_names(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
   if (const auto board = duo::parse_board(text, 0.025)) {
     const auto again = duo::parse_board(board->name(), 0.025);

@@ -5,7 +5,7 @@
 #include "core/check.h"
 #include "duoptic/sink.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_pfm(const std::uint8_t* data, std::size_t size) {
   const auto picture = duo::parse_pfm({reinterpret_cast<const char*>(data), size}, "fuzz");
   if (!picture) return 0;
   DUO_CHECK(!picture->empty() && std::size_t{4} * picture->width() * picture->height() < size);

@@ -9,7 +9,7 @@
 #include "core/libav.h"
 #include "sources/pictures.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_pictures(const std::uint8_t* data, std::size_t size) {
   constexpr std::int64_t kMost = 1 << 20;
   static const int file = [] {
     av_log_set_level(AV_LOG_QUIET);

@@ -33,7 +33,7 @@ void read_view(const std::filesystem::path& path, int track) {
 }  // namespace
 }  // namespace duo
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_recording(const std::uint8_t* data, std::size_t size) {
   av_log_set_level(AV_LOG_QUIET);
   static const int file = memfd_create("recording", 0);
   static const std::filesystem::path path = "/proc/self/fd/" + std::to_string(file);

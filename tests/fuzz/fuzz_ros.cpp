@@ -5,7 +5,7 @@
 
 #include "tests/fuzz/accepted_rig.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_ros(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const std::size_t end = std::min(text.find("---\n"), size);
   const auto rig = duo::rig_from_two_texts(text.substr(0, end), text.substr(std::min(end + 4, size)), "left", "right");

@@ -1,7 +1,7 @@
 // Any bytes as what a web server sends; the first one says whether it calls them a row of pictures.
 #include "tests/fuzz/fuzz_streams.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_web(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   duo::fuzz::set_up();
   duo::StreamInput input([] { return false; });
