@@ -9,13 +9,13 @@
 namespace duo::simd {
 namespace {
 
-constexpr int kRun = 32;                     // blocks worked on together
-constexpr int kColumns = kRun * kBlurBlock;  // a column sums up to 8 * 4080: 16 bits
+constexpr int kBlurRun = 32;                     // blocks worked on together
+constexpr int kBlurColumns = kBlurRun * kBlurBlock;  // a column sums up to 8 * 4080: 16 bits
 
 /// Adds the amounts of one row's differences to the sums of its columns; column 0 is kBlurFar pixels behind the rows' first.
 template <int kDistance>
 void add_row(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below, int columns, std::uint16_t* sums) {
-  std::int16_t down[kColumns + 2 * kDistance];
+  std::int16_t down[kBlurColumns + 2 * kDistance];
   constexpr int kFirst = kBlurFar - kDistance;
   for (int x = 0; x < columns + 2 * kDistance; ++x)
     down[x] = static_cast<std::int16_t>(above[kFirst + x] - 2 * here[kFirst + x] + below[kFirst + x]);
@@ -27,8 +27,8 @@ void add_row(const std::uint8_t* above, const std::uint8_t* here, const std::uin
 
 /// Adds the blocks of one row of them, `blocks` from column x0 + kBlurFar on.
 void add_blocks(View<const std::uint8_t> picture, int y0, int x0, int blocks, BlurBins& bins) {
-  std::uint16_t near[kColumns] = {}, far[kColumns] = {};
-  std::uint8_t at_end[kColumns] = {};  // not 0: a pixel is 0 or 255
+  std::uint16_t near[kBlurColumns] = {}, far[kBlurColumns] = {};
+  std::uint8_t at_end[kBlurColumns] = {};  // not 0: a pixel is 0 or 255
   const int columns = blocks * kBlurBlock;
   for (int y = y0; y < y0 + kBlurBlock; ++y) {
     const auto row = [&](int by) { return picture.row(y + by) + x0; };
@@ -57,8 +57,8 @@ int blur_q4(Pool& pool, View<const std::uint8_t> left, View<const std::uint8_t> 
     BlurBins bins[2] = {};
     for (int view = 0; view < 2; ++view)
       for (int by = begin; by < end; ++by)
-        for (int bx = 0; bx < across; bx += kRun)
-          add_blocks(view == 0 ? left : right, kBlurFar + kBlurRowStep * by, kBlurBlock * bx, std::min(kRun, across - bx),
+        for (int bx = 0; bx < across; bx += kBlurRun)
+          add_blocks(view == 0 ? left : right, kBlurFar + kBlurRowStep * by, kBlurBlock * bx, std::min(kBlurRun, across - bx),
                      bins[view]);
     const std::lock_guard lock(mutex);
     for (int view = 0; view < 2; ++view)

@@ -21,8 +21,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr int kPad = simd::MatchAroundScratch::kPad;
 constexpr int kLanes = 32;  // candidates of one step, in as many vectors as the target needs
 constexpr int kColumns = 8;
-using D16 = hn::CappedTag<std::uint16_t, kLanes>;
-using D8 = hn::Rebind<std::uint8_t, D16>;
+using Sums16 = hn::CappedTag<std::uint16_t, kLanes>;
+using Costs8 = hn::Rebind<std::uint8_t, Sums16>;
 
 /// Sums over 7 rows of each column of the patch, for the block's upper and lower window.
 struct ColumnSums {
@@ -55,8 +55,8 @@ struct Block {
 
   /// Costs of picture column x against candidates first_d .. first_d + 31, summed over rows.
   void column(int x, int first_d, std::uint16_t (*sums)[kLanes]) const {
-    const D16 d16;
-    const D8 d8;
+    const Sums16 d16;
+    const Costs8 d8;
     const int w = in.left.width();
     const int xl = std::clamp(x, 0, w - 1);
     // Mirrored: x - d of candidate d lies at w - 1 - (x - d) + kPad. Past the ends everything equals the edge pixel.
@@ -86,7 +86,7 @@ struct Block {
   /// Best of the candidates first_d + [begin, end) for the window whose first column is `column0`; keeps the better of it and
   /// what `best` holds, the earlier on a tie.
   static void winner(const ColumnSums& sums, int column0, int row, int first_d, int begin, int end, int& best_cost, int& best_d) {
-    const D16 d16;
+    const Sums16 d16;
     begin = std::max(begin, 0);
     end = std::min(end, kLanes);
     if (begin >= end) return;

@@ -35,7 +35,7 @@ void census_row(const std::uint8_t* const* rows, int w, int dead_zone, std::uint
   }
 }
 
-void sobel_row(const std::uint8_t* up, const std::uint8_t* mid, const std::uint8_t* down, int w, bool whole,
+void plane_sobel_row(const std::uint8_t* up, const std::uint8_t* mid, const std::uint8_t* down, int w, bool whole,
                std::uint8_t* out_x, std::uint8_t* out_y) {
   const hn::CappedTag<std::int16_t, PlaneImages::kPadRight / 2> d16;
   const hn::Rebind<std::uint8_t, decltype(d16)> d8;
@@ -54,7 +54,7 @@ void sobel_row(const std::uint8_t* up, const std::uint8_t* mid, const std::uint8
   }
 }
 
-void interval_row(const std::uint8_t* up, const std::uint8_t* mid, const std::uint8_t* down, int w, int wider,
+void plane_interval_row(const std::uint8_t* up, const std::uint8_t* mid, const std::uint8_t* down, int w, int wider,
                   std::uint8_t* low, std::uint8_t* high) {
   const hn::CappedTag<std::uint8_t, PlaneImages::kPadRight> d;
   const auto more = hn::Set(d, static_cast<std::uint8_t>(wider));
@@ -77,8 +77,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace duo {
 HWY_EXPORT(census_row);
-HWY_EXPORT(sobel_row);
-HWY_EXPORT(interval_row);
+HWY_EXPORT(plane_sobel_row);
+HWY_EXPORT(plane_interval_row);
 
 namespace simd {
 namespace {
@@ -117,7 +117,7 @@ void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uin
       const std::uint8_t* rows[5];
       for (int i = 0; i < 5; ++i) rows[i] = row(out.value[0], y + i - 2);
       HWY_DYNAMIC_DISPATCH(census_row)(rows, w, dead_zone, row(out.census[0], y), row(out.census[1], y));
-      HWY_DYNAMIC_DISPATCH(sobel_row)(rows[1], rows[2], rows[3], w, clear, row(out.value[1], y), row(out.value[2], y));
+      HWY_DYNAMIC_DISPATCH(plane_sobel_row)(rows[1], rows[2], rows[3], w, clear, row(out.value[1], y), row(out.value[2], y));
       for (const View<std::uint8_t> plane : {out.census[0], out.census[1], out.value[1], out.value[2]})
         out.continue_row(plane, y);
     }
@@ -125,7 +125,7 @@ void match_planes(Pool& pool, View<const std::uint8_t> gray, View<const std::uin
   const auto span = [&](int begin, int end) {
     for (int y = begin; y < end; ++y)
       for (std::size_t c = 0; c < MatchPlanes::kChannels; ++c) {
-        HWY_DYNAMIC_DISPATCH(interval_row)
+        HWY_DYNAMIC_DISPATCH(plane_interval_row)
         (row(out.value[c], y - 1), row(out.value[c], y), row(out.value[c], y + 1), w, clear && c == 0 ? kClearGrayDeadZone : 0,
          row(out.low[c], y), row(out.high[c], y));
         out.continue_row(out.low[c], y);

@@ -9,14 +9,14 @@
 namespace duo::simd {
 namespace {
 
-constexpr int kRun = 32;                      // blocks worked on together
-constexpr int kColumns = kRun * kNoiseBlock;  // a column sums up to 8 * 4080: 16 bits
+constexpr int kNoiseRun = 32;                      // blocks worked on together
+constexpr int kNoiseColumns = kNoiseRun * kNoiseBlock;  // a column sums up to 8 * 4080: 16 bits
 
 /// Adds the blocks of one row of them, `blocks` from column x0 - 1 on.
 void add_blocks(View<const std::uint8_t> picture, int y0, int x0, int blocks, NoiseBins& bins) {
-  std::int16_t down[kColumns + 2];
-  std::uint16_t sums[kColumns] = {};
-  std::uint8_t at_end[kColumns] = {};  // not 0: a pixel is 0 or 255
+  std::int16_t down[kNoiseColumns + 2];
+  std::uint16_t sums[kNoiseColumns] = {};
+  std::uint8_t at_end[kNoiseColumns] = {};  // not 0: a pixel is 0 or 255
   const int columns = blocks * kNoiseBlock;
   for (int y = y0; y < y0 + kNoiseBlock; ++y) {
     const std::uint8_t *above = picture.row(y - 1) + x0, *here = picture.row(y) + x0, *below = picture.row(y + 1) + x0;
@@ -45,8 +45,8 @@ int noise_q4(Pool& pool, View<const std::uint8_t> left, View<const std::uint8_t>
     NoiseBins bins[2] = {};
     for (int view = 0; view < 2; ++view)
       for (int by = begin; by < end; ++by)
-        for (int bx = 0; bx < across; bx += kRun)
-          add_blocks(view == 0 ? left : right, 1 + kNoiseRowStep * by, kNoiseBlock * bx, std::min(kRun, across - bx),
+        for (int bx = 0; bx < across; bx += kNoiseRun)
+          add_blocks(view == 0 ? left : right, 1 + kNoiseRowStep * by, kNoiseBlock * bx, std::min(kNoiseRun, across - bx),
                      bins[view]);
     const std::lock_guard lock(mutex);
     for (int view = 0; view < 2; ++view)

@@ -13,42 +13,42 @@ HWY_BEFORE_NAMESPACE();
 namespace duo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::ScalableTag<std::uint32_t>;
-using V = hn::Vec<D>;
+using PlaceTag = hn::ScalableTag<std::uint32_t>;
+using PlaceVec = hn::Vec<PlaceTag>;
 
 /// Where a vector of pixels lies in the raw picture. Lanes are x.
 struct Place {
-  V seen, x0, y0, fx_weights, fy;
+  PlaceVec seen, x0, y0, fx_weights, fy;
 
   Place(const std::uint32_t* corner_row, const std::uint16_t* fraction_row) {
-    const D d;
+    const PlaceTag d;
     const auto corner = hn::LoadU(d, corner_row);
     seen = hn::VecFromMask(d, hn::Ne(corner, hn::Set(d, ResampleMap::kOutside)));
     const auto place = hn::And(corner, seen);
     x0 = hn::ShiftRight<16>(place);
     y0 = hn::And(place, hn::Set(d, 0xFFFF));
-    const auto fraction = hn::PromoteTo(d, hn::LoadU(hn::Rebind<std::uint16_t, D>(), fraction_row));
+    const auto fraction = hn::PromoteTo(d, hn::LoadU(hn::Rebind<std::uint16_t, PlaceTag>(), fraction_row));
     const auto fx = hn::ShiftRight<8>(fraction);
     fx_weights = hn::Or(hn::Sub(hn::Set(d, 256), fx), hn::ShiftLeft<16>(fx));
     fy = hn::And(fraction, hn::Set(d, 0xFF));
   }
 
   /// From the left and the right pixel, one in each half of a lane.
-  V across(V pair) const {
-    const D d;
-    const hn::Repartition<std::uint16_t, D> d_pairs;
+  PlaceVec across(PlaceVec pair) const {
+    const PlaceTag d;
+    const hn::Repartition<std::uint16_t, PlaceTag> d_pairs;
     // p0 (256 - fx) + p1 fx <= 65280 fits 16 bits.
     const auto products = hn::BitCast(d, hn::Mul(hn::BitCast(d_pairs, pair), hn::BitCast(d_pairs, fx_weights)));
     return hn::Add(hn::And(products, hn::Set(d, 0xFFFF)), hn::ShiftRight<16>(products));
   }
 
-  using Signed = hn::Vec<hn::RebindToSigned<D>>;
+  using Signed = hn::Vec<hn::RebindToSigned<PlaceTag>>;
   struct Weights {
     Signed before, here, after, last;
   };
   /// cubic_weights() in lanes.
   Weights cubic() const {
-    const hn::RebindToSigned<D> d;
+    const hn::RebindToSigned<PlaceTag> d;
     const auto f = hn::BitCast(d, fy), f2 = hn::Mul(f, f), f3 = hn::Mul(f2, f), linear = hn::ShiftLeft<16>(f);
     const auto rounded = [&](auto v) HWY_ATTR { return hn::ShiftRight<17>(hn::Add(v, hn::Set(d, 1 << 16))); };
     const auto before = rounded(hn::Sub(hn::Sub(hn::ShiftLeft<9>(f2), f3), linear));
@@ -58,30 +58,30 @@ struct Place {
   }
   /// soft_weights() in lanes.
   Weights soft() const {
-    const hn::RebindToSigned<D> d;
+    const hn::RebindToSigned<PlaceTag> d;
     const auto f = hn::BitCast(d, fy), whole = hn::ShiftRight<2>(hn::Mul(f, hn::Sub(hn::Set(d, 256), f)));
     const auto beside = hn::ShiftRight<24>(hn::Add(hn::Mul(hn::Mul(whole, whole), hn::Set(d, 10)), hn::Set(d, 1 << 23)));
     return {beside, hn::Sub(hn::Set(d, 256), hn::Add(beside, beside)), beside, hn::Zero(d)};
   }
 
   /// From the pairs of four rows.
-  hn::Vec<hn::Rebind<std::uint8_t, D>> value(const Weights& weights, V before_pair, V here_pair, V after_pair,
-                                             V last_pair) const {
-    const hn::RebindToSigned<D> d;
-    const auto row = [&](V pair, Signed weight) HWY_ATTR { return hn::Mul(hn::BitCast(d, across(pair)), weight); };
+  hn::Vec<hn::Rebind<std::uint8_t, PlaceTag>> value(const Weights& weights, PlaceVec before_pair, PlaceVec here_pair, PlaceVec after_pair,
+                                             PlaceVec last_pair) const {
+    const hn::RebindToSigned<PlaceTag> d;
+    const auto row = [&](PlaceVec pair, Signed weight) HWY_ATTR { return hn::Mul(hn::BitCast(d, across(pair)), weight); };
     const auto sum = hn::Add(hn::Add(row(before_pair, weights.before), row(here_pair, weights.here)),
                              hn::Add(row(after_pair, weights.after), row(last_pair, weights.last)));
     const auto value = hn::And(hn::ShiftRight<16>(hn::Add(sum, hn::Set(d, 32768))), hn::BitCast(d, seen));
-    return hn::DemoteTo(hn::Rebind<std::uint8_t, D>(), value);  // clips
+    return hn::DemoteTo(hn::Rebind<std::uint8_t, PlaceTag>(), value);  // clips
   }
 
-  hn::Vec<hn::Rebind<std::uint8_t, D>> value(V top_pair, V bottom_pair) const {
-    const D d;
+  hn::Vec<hn::Rebind<std::uint8_t, PlaceTag>> value(PlaceVec top_pair, PlaceVec bottom_pair) const {
+    const PlaceTag d;
     const auto top = across(top_pair), bottom = across(bottom_pair);
     // top 256 + (bottom - top) fy: the true result is not negative, so wrapping in between does no harm.
     const auto sum = hn::Add(hn::ShiftLeft<8>(top), hn::Mul(hn::Sub(bottom, top), fy));
     const auto rounded = hn::And(hn::ShiftRight<16>(hn::Add(sum, hn::Set(d, 32768))), seen);
-    return hn::DemoteTo(hn::Rebind<std::uint8_t, D>(), hn::BitCast(hn::RebindToSigned<D>(), rounded));
+    return hn::DemoteTo(hn::Rebind<std::uint8_t, PlaceTag>(), hn::BitCast(hn::RebindToSigned<PlaceTag>(), rounded));
   }
 };
 
@@ -89,9 +89,9 @@ struct Place {
 // its end, by two bytes at most: there a gather starts that much earlier and is shifted back.
 void rectify_rows(View<const std::uint8_t> src, const ResampleMap& map, View<std::uint8_t> dst, View<std::uint8_t> inside,
                   int y_begin, int y_end) {
-  const D d;
-  const hn::RebindToSigned<D> d_signed;
-  const hn::Rebind<std::uint8_t, D> d_u8;
+  const PlaceTag d;
+  const hn::RebindToSigned<PlaceTag> d_signed;
+  const hn::Rebind<std::uint8_t, PlaceTag> d_u8;
   const int n = static_cast<int>(hn::Lanes(d));
   const int w = dst.width(), stride = static_cast<int>(src.stride());
   const std::int32_t last_word = (src.height() - 1) * stride + src.width() - 4;
@@ -144,9 +144,9 @@ void rectify_rows(View<const std::uint8_t> src, const ResampleMap& map, View<std
 
 // Two pixels are six bytes: one gather fetches the first four, r g b r, and another the last, b r g b.
 void rectify_color_rows(View<const Rgb8> src, const ResampleMap& map, View<Rgb8> dst, int y_begin, int y_end) {
-  const D d;
-  const hn::RebindToSigned<D> d_signed;
-  const hn::Rebind<std::uint8_t, D> d_u8;
+  const PlaceTag d;
+  const hn::RebindToSigned<PlaceTag> d_signed;
+  const hn::Rebind<std::uint8_t, PlaceTag> d_u8;
   const int n = static_cast<int>(hn::Lanes(d)), w = dst.width();
   const auto stride = static_cast<std::uint32_t>(src.stride());
 

@@ -16,13 +16,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace duo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::CappedTag<float, 16>;
+using SiftTag = hn::CappedTag<float, 16>;
 
 // Columns are summed into a stack buffer a chunk of the row at a time, then the buffer along x.
 void sift_blur(View<const float> src, const sift::BlurKernel& kernel, View<float> dst, View<float> difference, int begin,
                int end) {
   constexpr int kChunk = 512, kMost = sift::kMostRadius;
-  const D d;
+  const SiftTag d;
   const int n = static_cast<int>(hn::Lanes(d)), w = src.width(), h = src.height(), radius = kernel.radius;
   HWY_ALIGN_MAX float columns[kMost + kChunk + kMost + 2 * 16];  // columns[kMost + i] belongs to x0 + i
   const float *up[kMost + 1], *down[kMost + 1];
@@ -59,7 +59,7 @@ void sift_blur(View<const float> src, const sift::BlurKernel& kernel, View<float
 
 void sift_mark(const View<const float> (&differences)[3], float threshold, View<std::uint8_t> marks, int x_begin, int x_end,
                int begin, int end) {
-  const D d;
+  const SiftTag d;
   const int n = static_cast<int>(hn::Lanes(d));
   const auto least = hn::Set(d, threshold);
   for (int y = begin; y < end; ++y) {
@@ -89,7 +89,7 @@ void sift_mark(const View<const float> (&differences)[3], float threshold, View<
 }
 
 void sift_gradient(View<const float> src, View<float> magnitude, View<float> turns, int begin, int end) {
-  const D d;
+  const SiftTag d;
   const int n = static_cast<int>(hn::Lanes(d)), w = src.width();
   const auto zero = hn::Zero(d);
   for (int y = begin; y < end; ++y) {

@@ -15,9 +15,9 @@ HWY_BEFORE_NAMESPACE();
 namespace duo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<std::int16_t, 32>;
-using DU = hn::RebindToUnsigned<D>;
-using V = hn::Vec<D>;
+using ColorTag = hn::CappedTag<std::int16_t, 32>;
+using ColorUnsignedTag = hn::RebindToUnsigned<ColorTag>;
+using ColorVec = hn::Vec<ColorTag>;
 constexpr int kBeside = 1;  // samples before a row's first and after its last
 
 /// The sums of two rows, less 256; at the ends once more.
@@ -30,16 +30,16 @@ void sum_of_rows(View<const std::uint8_t> plane, ChromaRows rows, std::int16_t* 
 }
 
 /// (a b + 32768) >> 16, which fits 16 bits.
-HWY_INLINE V rounded_product(V a, V b) {
-  const D d;
-  const DU du;
+HWY_INLINE ColorVec rounded_product(ColorVec a, ColorVec b) {
+  const ColorTag d;
+  const ColorUnsignedTag du;
   return hn::Add(hn::MulHigh(a, b), hn::BitCast(d, hn::ShiftRight<15>(hn::BitCast(du, hn::Mul(a, b)))));
 }
 
 /// (a b + c e + 32768) >> 16: the low halves' sum may carry, and its rounding too.
-HWY_INLINE V rounded_products(V a, V b, V c, V e) {
-  const D d;
-  const DU du;
+HWY_INLINE ColorVec rounded_products(ColorVec a, ColorVec b, ColorVec c, ColorVec e) {
+  const ColorTag d;
+  const ColorUnsignedTag du;
   const auto low = hn::BitCast(du, hn::Mul(a, b)), sum = hn::Add(low, hn::BitCast(du, hn::Mul(c, e)));
   const auto carry = hn::IfThenElseZero(hn::Lt(sum, low), hn::Set(du, 1));
   const auto more = hn::Add(carry, hn::ShiftRight<15>(sum));
@@ -47,7 +47,7 @@ HWY_INLINE V rounded_products(V a, V b, V c, V e) {
 }
 
 struct Colors {
-  V r, g, b;
+  ColorVec r, g, b;
 };
 
 class Row {
@@ -57,25 +57,25 @@ class Row {
 
   /// The pixels of the samples from i on.
   HWY_INLINE void pixels(int i) const {
-    const D d;
-    const DU du;
-    const hn::Repartition<std::uint8_t, D> d8;
+    const ColorTag d;
+    const ColorUnsignedTag du;
+    const hn::Repartition<std::uint8_t, ColorTag> d8;
     const auto luma = hn::BitCast(du, hn::LoadU(d8, luma_ + 2 * i));
     const auto even = hn::BitCast(d, hn::And(luma, hn::Set(du, 0xFF))), odd = hn::BitCast(d, hn::ShiftRight<8>(luma));
     const Colors left = colors(even, i, i - 1), right = colors(odd, i, i + 1);
-    const auto both = [&](V a, V b) HWY_ATTR { return hn::BitCast(d8, hn::Or(a, hn::ShiftLeft<8>(b))); };
+    const auto both = [&](ColorVec a, ColorVec b) HWY_ATTR { return hn::BitCast(d8, hn::Or(a, hn::ShiftLeft<8>(b))); };
     hn::StoreInterleaved3(both(left.r, right.r), both(left.g, right.g), both(left.b, right.b), d8, &out_[2 * i].r);
   }
 
  private:
-  HWY_INLINE Colors colors(V luma, int near, int far) const {
-    const D d;
+  HWY_INLINE Colors colors(ColorVec luma, int near, int far) const {
+    const ColorTag d;
     const auto chroma = [&](const std::int16_t* sums) HWY_ATTR {
-      const V here = hn::LoadU(d, sums + kBeside + near), beside = hn::LoadU(d, sums + kBeside + far);
+      const ColorVec here = hn::LoadU(d, sums + kBeside + near), beside = hn::LoadU(d, sums + kBeside + far);
       return hn::Add(hn::Add(here, hn::Add(here, here)), beside);
     };
-    const auto clipped = [&](V added) HWY_ATTR { return hn::Min(hn::Max(hn::Add(luma, added), hn::Zero(d)), hn::Set(d, 255)); };
-    const V u = chroma(u_), v = chroma(v_);
+    const auto clipped = [&](ColorVec added) HWY_ATTR { return hn::Min(hn::Max(hn::Add(luma, added), hn::Zero(d)), hn::Set(d, 255)); };
+    const ColorVec u = chroma(u_), v = chroma(v_);
     return {clipped(rounded_product(v, hn::Set(d, weights_.red_of_v))),
             clipped(rounded_products(u, hn::Set(d, weights_.green_of_u), v, hn::Set(d, weights_.green_of_v))),
             clipped(rounded_product(u, hn::Set(d, weights_.blue_of_u)))};
@@ -88,7 +88,7 @@ class Row {
 };
 
 void yuv_rgb_rows(const YuvPlanes& src, const YuvWeights& weights, simd::YuvScratch& scratch, View<Rgb8> dst) {
-  const D d;
+  const ColorTag d;
   const int n = static_cast<int>(hn::Lanes(d)), samples = src.u.width();
   std::int16_t *const u = scratch.u.row(0), *const v = scratch.v.row(0);
   Rgb8 some[2 * hn::MaxLanes(d)];
