@@ -2,6 +2,7 @@
 // take less time to be worked out twice than to be read from memory. First rows with their paths from both sides, each by one
 // thread; then columns with the path from above, which is the last one, so that energies take the place of the sums.
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <utility>
@@ -15,7 +16,7 @@
 // After foreach_target.h, as Highway asks.
 #include <hwy/highway.h>
 
-#include "stages/semi_global/semi_global-inl.h"
+#include "stages/semi_global/semi_global_costs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace duo::HWY_NAMESPACE {
@@ -29,7 +30,6 @@ class EnergyRows {
     const int n = static_cast<int>(hn::Lanes(D()));
     first_ = (lanes_ - in.max_disparity) / n * n;
     for (int i = 0; i < 256; ++i) p2_more_[i] = static_cast<std::uint8_t>(in.params.p2_at(i) - in.params.p1);
-    for (int j = 0; j < kGap; ++j) unused_[j] = first_ + j < lanes_ - in.max_disparity ? 255 : 0;
   }
 
   /// Sums of the paths from the left and from the right.
@@ -102,23 +102,14 @@ class EnergyRows {
 
   /// 255 where a lane holds no disparity.
   void costs(EnergyThread& t, int y, int begin, int end) const {
-    const D d;
-    const int n = static_cast<int>(hn::Lanes(d));
-    const RowPlanes left(in_.left, y, 0), right(in_.right, y, 1 - lanes_);
-    const auto unused = hn::Load(d, unused_);
-    for (int x = begin; x < end; ++x) {
-      const PixelCost cost_of(left, right, in_.params, x);
-      std::uint8_t* const out = t.costs.row(0) + static_cast<std::ptrdiff_t>(x) * lanes_;
-      hn::Store(hn::Or(cost_of.at(first_), unused), d, out + first_);
-      for (int j = first_ + n; j < lanes_; j += n) hn::Store(cost_of.at(j), d, out + j);
-    }
+    RowCosts of_row(in_, y, lanes_);
+    for (int x = begin; x < end; x += kBlock) of_row.block(x, std::min(x + kBlock, end), t.costs.row(0));
   }
 
   const SemiGlobal& in_;
   EnergyVolume& out_;
-  int lanes_, first_;                        // first: lane of the first vector that holds a disparity
-  std::uint8_t p2_more_[256];                // [gray step]: P2 - P1
-  HWY_ALIGN_MAX std::uint8_t unused_[kGap];  // 255 in the lanes of that vector which hold none
+  int lanes_, first_;          // first: lane of the first vector that holds a disparity
+  std::uint8_t p2_more_[256];  // [gray step]: P2 - P1
 };
 
 void energies_along(const SemiGlobal& in, EnergyThread& thread, EnergyVolume& out, int begin, int end) {

@@ -1,4 +1,4 @@
-// The vectors of semi_global: least lane, one step of a path, cost of a pixel. Included once for each instruction set.
+// The vectors of semi_global: least lane, one step of a path. Included once for each instruction set.
 
 #include <cstdlib>
 
@@ -81,58 +81,6 @@ struct Before {
     const auto beside = hn::Min(hn::Min(hn::LoadU(d, costs + j - 1), hn::LoadU(d, costs + j + 1)), beside_most);
     const auto best = hn::Min(hn::Load(d, costs + j), hn::Add(beside, p1));
     return kUnused ? hn::SaturatedAdd(cost, hn::Sub(best, least)) : hn::Add(cost, hn::Sub(best, least));
-  }
-};
-
-/// The planes of one row: values of the left view, and where those of the right view's lane 0 are for x = 0. Held by value, as
-/// everything that is only pointed to would be read again after each byte stored.
-struct RowPlanes {
-  const std::uint8_t *census[2], *value[3], *low[3], *high[3], *outside;
-  RowPlanes(const MatchPlanes& planes, int y, int offset) {
-    for (std::size_t i = 0; i < 2; ++i) census[i] = planes.census[i].row(y) + offset;
-    for (std::size_t c = 0; c < 3; ++c) {
-      value[c] = planes.value[c].row(y) + offset;
-      low[c] = planes.low[c].row(y) + offset;
-      high[c] = planes.high[c].row(y) + offset;
-    }
-    outside = planes.outside.row(y) + offset;
-  }
-};
-
-/// One pixel's side of the cost, broadcast.
-struct PixelCost {
-  const RowPlanes& right;
-  int x;
-  V census[2], value[3], low[3], high[3], census_most, most, outside;
-
-  HWY_INLINE PixelCost(const RowPlanes& left, const RowPlanes& right_, const SemiGlobalParams& params, int x_)
-      : right(right_), x(x_) {
-    for (std::size_t i = 0; i < 2; ++i) census[i] = set(left.census[i][x]);
-    for (std::size_t c = 0; c < 3; ++c) {
-      value[c] = set(left.value[c][x]);
-      low[c] = set(left.low[c][x]);
-      high[c] = set(left.high[c][x]);
-    }
-    census_most = set(params.census_truncation);
-    most = set(params.truncation);
-    outside = set(left.outside[x]);
-  }
-
-  HWY_INLINE V at(int j) const {
-    const D d;
-    const auto load = [&](const std::uint8_t* plane) HWY_ATTR { return hn::LoadU(d, plane + x + j); };
-    auto sum = hn::Min(hn::Add(hn::PopulationCount(hn::Xor(census[0], load(right.census[0]))),
-                               hn::PopulationCount(hn::Xor(census[1], load(right.census[1])))),
-                       census_most);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto v = load(right.value[c]);
-      const auto to_right =
-          hn::Or(hn::SaturatedSub(value[c], load(right.high[c])), hn::SaturatedSub(load(right.low[c]), value[c]));
-      const auto to_left = hn::Or(hn::SaturatedSub(v, high[c]), hn::SaturatedSub(low[c], v));
-      sum = hn::Add(sum, hn::Min(hn::Min(to_right, to_left), most));
-    }
-    const auto all = hn::Add(census_most, hn::Add(most, hn::Add(most, most)));
-    return hn::IfVecThenElse(hn::Or(outside, load(right.outside)), all, sum);
   }
 };
 

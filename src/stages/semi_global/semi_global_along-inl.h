@@ -3,7 +3,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "stages/semi_global/semi_global-inl.h"
+#include "stages/semi_global/semi_global_costs-inl.h"
 
 #if defined(DUO_SEMI_GLOBAL_ALONG_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef DUO_SEMI_GLOBAL_ALONG_INL_H
@@ -17,7 +17,6 @@ namespace duo::HWY_NAMESPACE {
 
 using Part = simd::SemiGlobalPart;
 
-constexpr int kBlock = 32;  // pixels between two looks at the row before
 constexpr int kSpins = 20;  // about a microsecond
 // The volume comes from main memory, and what fetches ahead by itself stops at each page.
 constexpr int kFetchAhead = 16, kLine = 64;  // pixels, bytes
@@ -33,7 +32,6 @@ struct Sweep {
   bool partly;                // that first vector has lanes which hold none
   std::uint8_t p2_more[256];  // [gray step]: P2 - P1
   HWY_ALIGN_MAX std::uint8_t disparities[256];  // of the lanes
-  HWY_ALIGN_MAX std::uint8_t unused[kGap];      // 255 in the lanes of the first vector which hold none
 
   Sweep(const SemiGlobal& in_, Scratch& scratch, const SemiGlobalMatch& out_, const Part& part_)
       : in(in_), s(scratch), out(out_), part(part_), w(in.left.size().width), h(in.left.size().height), lanes(s.lanes) {
@@ -43,7 +41,6 @@ struct Sweep {
     for (int j = 0; j < lanes; ++j) disparities[j] = static_cast<std::uint8_t>(lanes - 1 - j);
     ahead = std::max(1, part.width() / (2 * part.threads * kBlock)) * kBlock;
     for (int i = 0; i < 256; ++i) p2_more[i] = static_cast<std::uint8_t>(in.params.p2_at(i) - in.params.p1);
-    for (int j = 0; j < kGap; ++j) unused[j] = first + j < lanes - in.max_disparity ? 255 : 0;
   }
 
   int y_of(int i) const { return part.up ? h - 1 - i : i; }
@@ -138,8 +135,8 @@ class Along {
   Along(const Sweep& sweep, int i, Scratch::Row& row)
       : sweep_(sweep),
         row_(row),
-        left_(sweep.in.left, sweep.y_of(i), 0),
-        right_(sweep.in.right, sweep.y_of(i), 1 - sweep.lanes) {
+        costs_(sweep.in, sweep.y_of(i), sweep.lanes),
+        gray_(sweep.in.left.value[0].row(sweep.y_of(i))) {
     const int ring = sweep.part.threads + 1, y = sweep.y_of(i);
     Scratch& s = sweep.s;
     const auto here = static_cast<std::size_t>(sweep.part.ring + i % ring);
@@ -160,30 +157,19 @@ class Along {
 
   /// Costs of a block of pixels. By themselves, as nothing here waits for the pixel before: mixed with the paths they take
   /// twice the time.
-  HWY_NOINLINE void costs(int begin, int end) {
-    const D d;
-    const int n = static_cast<int>(hn::Lanes(d)), first = sweep_.first, lanes = sweep_.lanes;
-    const auto unused = hn::Load(d, sweep_.unused);
-    for (int x = begin; x < end; ++x) {
-      const PixelCost cost_of(left_, right_, sweep_.in.params, x);
-      std::uint8_t* const costs = row_.costs.row(0) + static_cast<std::ptrdiff_t>(x) * lanes;
-      hn::Store(hn::Or(cost_of.at(first), unused), d, costs + first);
-      for (int j = first + n; j < lanes; j += n) hn::Store(cost_of.at(j), d, costs + j);
-    }
-  }
+  void costs(int begin, int end) { costs_.block(begin, end, row_.costs.row(0)); }
 
   template <int kVectors>
   HWY_INLINE void pixel(int x) {
     const D d;
     const int first = first_lane<kVectors>(sweep_), lanes = lanes_of<kVectors>(sweep_);
     const std::ptrdiff_t stride = sweep_.s.stride, cell = static_cast<std::ptrdiff_t>(x) * lanes;
-    const std::uint8_t* gray = left_.value[0];
     // Where a path begins, beside the picture, the gray step does not matter: no step is dearer than none from zeros.
-    const Before from_side = before(sweep_, before_, &least_, gray[x], gray[x - kStep]);
+    const Before from_side = before(sweep_, before_, &least_, gray_[x], gray_[x - kStep]);
     constexpr int kFrom[3] = {0, kDiagonals ? -1 : 0, kDiagonals ? 1 : 0};
     const auto above = [&](int k) HWY_ATTR {
       const int from = x + kFrom[k];
-      return before(sweep_, paths_above_[k] + from * stride_above_, minima_above_[k] + from, gray[x], gray_above_[from]);
+      return before(sweep_, paths_above_[k] + from * stride_above_, minima_above_[k] + from, gray_[x], gray_above_[from]);
     };
     const Before from_above[3] = {above(0), above(kDiagonals ? 1 : 0), above(kDiagonals ? 2 : 0)};
     std::uint8_t *const here = here_, *const sums = (kKeep ? kept_ : row_.sums.row(0)) + cell,
@@ -235,7 +221,8 @@ class Along {
  private:
   const Sweep& sweep_;
   Scratch::Row& row_;
-  RowPlanes left_, right_;
+  RowCosts costs_;
+  const std::uint8_t* gray_;
   std::uint8_t *paths_[3] = {}, *minima_[3] = {};
   const std::uint8_t *paths_above_[3] = {}, *minima_above_[3] = {}, *gray_above_ = nullptr;
   std::ptrdiff_t stride_above_;
