@@ -92,7 +92,7 @@ HWY_INLINE Before before(const Sweep& sweep, const std::uint8_t* costs, const st
   return Before(costs, least, &sweep.p2_more[std::abs(gray - gray_before)], sweep.in.params.p1);
 }
 
-/// What is known of the lanes when the program is made: nothing, or that they are so many whole vectors.
+/// What is known of the lanes when the program is made: nothing, or that they are so many vectors, and that there is no volume.
 constexpr int kAnyVectors = 0;
 template <int kVectors>
 HWY_INLINE int lanes_of(const Sweep& sweep) {
@@ -108,7 +108,8 @@ template <int kVectors, class F>
 HWY_INLINE void each_vector(const Sweep& sweep, const F& f) {
   const int n = static_cast<int>(hn::Lanes(D()));
   if constexpr (kVectors != kAnyVectors) {
-    for (int v = 0; v < kVectors; ++v) f(v * n, std::false_type());
+    f(0, std::true_type());
+    for (int v = 1; v < kVectors; ++v) f(v * n, std::false_type());
     return;
   }
   int j = sweep.first;
@@ -175,8 +176,8 @@ class Along {
     std::uint8_t *const here = here_, *const sums = (kKeep ? kept_ : row_.sums.row(0)) + cell,
                         *const costs = row_.costs.row(0) + cell;
     std::uint8_t* const paths[3] = {paths_[0] + x * stride, paths_[kPaths / 2] + x * stride, paths_[kPaths - 1] + x * stride};
-    const std::uint8_t* const kept = kPick && kept_ != nullptr ? kept_ + cell : nullptr;
-    if (kept != nullptr && x + kFetchAhead < sweep_.w)
+    const std::uint8_t* const kept = kPick && kVectors == kAnyVectors && kept_ != nullptr ? kept_ + cell : nullptr;
+    if (kVectors == kAnyVectors && kept != nullptr && x + kFetchAhead < sweep_.w)
       for (int j = first / kLine * kLine; j < lanes; j += kLine) hwy::Prefetch(kept + kFetchAhead * lanes + j);
     auto least_side = set(255);
     V least_above[3] = {least_side, least_side, least_side};
@@ -188,7 +189,7 @@ class Along {
         sum = from_side.template step<kUnused>(j, cost);
         hn::Store(sum, d, here + j);
         least_side = hn::Min(least_side, sum);
-        if (kept != nullptr) sum = hn::SaturatedAdd(sum, hn::Load(d, kept + j));
+        if (kVectors == kAnyVectors && kept != nullptr) sum = hn::SaturatedAdd(sum, hn::Load(d, kept + j));
       }
       for (int k = 0; k < kPaths; ++k) {
         const auto l = from_above[k].template step<kUnused>(j, cost);

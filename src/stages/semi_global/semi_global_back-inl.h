@@ -27,7 +27,11 @@ class Back {
         y_(y),
         gray_(sweep.in.left.value[0].row(y)),
         before_(row.back.row(0) + kGap),
-        here_(row.back.row(1) + kGap) {
+        here_(row.back.row(1) + kGap),
+        winners_(sweep.out.left.row(y)),
+        higher_(row.beside.row(0)),
+        lower_(row.beside.row(1)),
+        margins_(sweep.out.margin.empty() ? nullptr : sweep.out.margin.row(y)) {
     if (!used) return;
     const Part& part = sweep.part;
     if (part.facing == nullptr) {
@@ -95,7 +99,7 @@ class Back {
  private:
   /// The left winner of a pixel: the last lane that holds the least.
   template <int kVectors>
-  HWY_INLINE void pick(int x, std::uint8_t* totals, int least_total) {
+  HWY_INLINE void pick(int x, const std::uint8_t* totals, int least_total) {
     const D d;
     const int n = static_cast<int>(hn::Lanes(d)), lanes = lanes_of<kVectors>(sweep_);
     int lane = 0;
@@ -104,10 +108,10 @@ class Back {
       hn::StoreMaskBits(d, hn::Eq(hn::Load(d, totals + j), set(least_total)), reinterpret_cast<std::uint8_t*>(&bits));
       lane = bits != 0 ? j + 63 - std::countl_zero(bits) : lane;
     }
-    sweep_.out.left.row(y_)[x] = static_cast<std::int16_t>(lanes - 1 - lane);
-    row_.beside.row(0)[x] = static_cast<std::uint8_t>(totals[lane + 1] - least_total);
-    row_.beside.row(1)[x] = static_cast<std::uint8_t>(totals[lane - 1] - least_total);
-    if (!sweep_.out.margin.empty()) sweep_.out.margin.row(y_)[x] = static_cast<std::uint8_t>(margin(totals, lane, least_total));
+    winners_[x] = static_cast<std::int16_t>(lanes - 1 - lane);
+    higher_[x] = static_cast<std::uint8_t>(totals[lane + 1] - least_total);
+    lower_[x] = static_cast<std::uint8_t>(totals[lane - 1] - least_total);
+    if (margins_ != nullptr) margins_[x] = static_cast<std::uint8_t>(margin<kVectors>(totals, lane, least_total));
   }
 
   /// The sub-pixel offsets of a row.
@@ -143,13 +147,19 @@ class Back {
     hn::StoreU(hn::DemoteTo(du16, fine), du16, sweep_.out.fine.row(y_) + x);
   }
 
-  int margin(std::uint8_t* totals, int lane, int least_total) const {
+  /// The winner and its neighbours do not count. They are told by their lanes: overwritten in memory, they would have to be
+  /// there before whole vectors of them could be loaded again.
+  template <int kVectors>
+  HWY_INLINE int margin(const std::uint8_t* totals, int lane, int least_total) const {
     const D d;
-    // The winner and its neighbours do not count; what lies before the first lane and behind the last is never read.
-    totals[lane - 1] = totals[lane] = totals[lane + 1] = 255;
     auto second = set(255);
-    for (int j = sweep_.first; j < sweep_.lanes; j += static_cast<int>(hn::Lanes(d)))
-      second = hn::Min(second, hn::Load(d, totals + j));
+    const auto winner = set(lanes_of<kVectors>(sweep_) - 1 - lane), one = set(1);
+    each_vector<kVectors>(sweep_, [&](int j, auto) HWY_ATTR {
+      const auto disparity = hn::Load(d, sweep_.disparities + j);
+      const auto beside = hn::Or(hn::SaturatedSub(disparity, winner), hn::SaturatedSub(winner, disparity));
+      const auto is_near = hn::VecFromMask(d, hn::Eq(hn::Min(beside, one), beside));
+      second = hn::Min(second, hn::Or(is_near, hn::Load(d, totals + j)));
+    });
     return first_of(least(d, second, second)) - least_total;
   }
 
@@ -158,6 +168,8 @@ class Back {
   int y_;
   const std::uint8_t* gray_;
   std::uint8_t *before_, *here_;
+  std::int16_t* winners_;
+  std::uint8_t *higher_, *lower_, *margins_;
   std::uint8_t least_ = 0;
 };
 

@@ -99,10 +99,10 @@ void run(const Sweep& sweep) {
     sweep.sums_are_there();
     sweep.wait_for_sums();
   }
-  // The default's 128 disparities, without loops.
+  // The default's 97 to 128 disparities, without loops.
   constexpr int kUsual = 128, kUsualVectors = kUsual / static_cast<int>(hn::MaxLanes(D()));
   const bool is_usual = sweep.lanes == kUsual && hn::Lanes(D()) == hn::MaxLanes(D());  // vectors of SVE can be shorter
-  if (!kDiagonals && is_usual && sweep.first == 0 && !sweep.partly)
+  if (!kDiagonals && is_usual && sweep.first == 0 && !sweep.in.params.upward)
     walk_and_pick<kDiagonals, kStep, kDiagonals ? kAnyVectors : kUsualVectors>(sweep, i);
   else
     walk_and_pick<kDiagonals, kStep, kAnyVectors>(sweep, i);
