@@ -310,8 +310,9 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(const Summary summary, process(pipeline, options, app, progress));
   progress.end();
   print(summary, pipeline, options);
-  if (const std::string warning = all_warnings(summary, pipeline); !pipeline.live() && !warning.empty())
-    say(app, "warning: " + warning);
+  // What a live source has to say was said as it came.
+  const std::string warning = pipeline.live() ? summary.far_warning : all_warnings(summary, pipeline);
+  if (!warning.empty()) say(app, "warning: " + warning);
   return summary.end == Next::kCut ? Exit::kCut : Exit::kOk;
 }
 

@@ -120,11 +120,15 @@ std::string_view exif_chunk(std::string_view bytes) {
   return {};
 }
 
+/// Of a segment that says size, bits and components.
+bool is_frame_marker(std::uint8_t marker) {
+  return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+}
+
 std::string unsupported_jpeg(std::string_view bytes) {
   std::string why;
   walk_jpeg(bytes, [&](std::uint8_t marker, std::string_view content) {
-    const bool frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-    if (!frame) return marker == kScan;
+    if (!is_frame_marker(marker)) return marker == kScan;
     if (marker >= 0xc9) why = "arithmetic coding";
     if (marker == 0xc3 || (marker >= 0xc5 && marker <= 0xc7)) why = "lossless or hierarchical coding";
     if (byte_of(content, 0) != 8) why = fmt::format("{} bits a value", byte_of(content, 0));
@@ -278,23 +282,26 @@ std::optional<ViewLayout> layout_of_jps(std::string_view bytes, bool named_jps) 
 int coding_noise_q4(std::string_view bytes) {
   constexpr std::uint8_t kTables = 0xdb;
   constexpr std::size_t kLowest = 10;
-  std::size_t squares = 0;
+  std::size_t squares[16] = {};  // per table
+  std::uint8_t of_brightness = 0;
   if (!is_jpeg(bytes)) return 0;
   walk_jpeg(bytes, [&](std::uint8_t marker, std::string_view content) {
+    // Bits a value, height, width, count; then of each component its name, sampling and table. Brightness comes first.
+    if (is_frame_marker(marker)) of_brightness = byte_of(content, 8) & 15;
     while (marker == kTables && !content.empty()) {
       const std::size_t each = byte_of(content, 0) >> 4 != 0 ? 2 : 1, length = 1 + 64 * each;
-      const bool of_brightness = (byte_of(content, 0) & 15) == 0;
       if (content.size() < length) return true;
-      if (of_brightness) squares = 0;
-      for (std::size_t i = 0; of_brightness && i < kLowest; ++i) {
+      std::size_t& sum = squares[byte_of(content, 0) & 15];
+      sum = 0;
+      for (std::size_t i = 0; i < kLowest; ++i) {
         const std::size_t step = number_at(content, 1 + each * i, each, false);
-        squares += step * step;
+        sum += step * step;
       }
       content.remove_prefix(length);
     }
     return marker == kScan;
   });
-  return static_cast<int>(std::lround(16 * std::sqrt(static_cast<double>(squares) / (12 * 64))));
+  return static_cast<int>(std::lround(16 * std::sqrt(static_cast<double>(squares[of_brightness]) / (12 * 64))));
 }
 
 void put_jpeg(std::string_view bytes, Picture& into) {

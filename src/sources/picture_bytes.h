@@ -38,9 +38,9 @@ std::optional<ViewLayout> layout_of_jps(std::string_view bytes, bool named_jps);
 /// `bytes` are none, or have no table of steps before their first scan.
 ///
 /// A coefficient that is rounded to multiples of q is off by q / sqrt(12) in the mean, and a pixel is the sum of 64 of them,
-/// each over 8. The ten lowest count: most of the others are zero before and after.
+/// each over 8. The ten lowest count: most of the others are zero before and after. The table is that of the first component.
 ///
-/// Source   ITU-T T.81, A.3.4 (rounding), B.2.4.1 (table)
+/// Source   ITU-T T.81, A.3.4 (rounding), B.2.2 (which table), B.2.4.1 (table)
 int coding_noise_q4(std::string_view bytes);
 /// Gives a picture the bytes of its JPEG and their coding noise; of no bytes, neither.
 void put_jpeg(std::string_view bytes, Picture& into);

@@ -66,6 +66,10 @@ TEST(CodingNoise, ByHand) {
   EXPECT_EQ(coding_noise_q4(tables("\0"s + steps + "\1"s + fine)), 29);
   EXPECT_EQ(coding_noise_q4(tables("\1"s + fine + "\0"s + steps)), 29);
   EXPECT_EQ(coding_noise_q4(tables("\1"s + steps)), 0);
+  // A frame of 8 bits, 16x16, whose first component has table 2, the second table 0.
+  const std::string frame = "\xff\xc0\x00\x0e\x08\x00\x10\x00\x10\x02\x01\x11\x02\x02\x11\x00"s;
+  EXPECT_EQ(coding_noise_q4(tables("\0"s + fine + "\2"s + steps) + frame), 29);
+  EXPECT_EQ(coding_noise_q4(tables("\0"s + steps + "\2"s + fine) + frame), 2);
   EXPECT_EQ(coding_noise_q4(tables("\0"s + fine)), 2);  // 16 sqrt(10 / 768) = 1.8
   std::string wide = "\x10"s;
   for (int i = 0; i < 64; ++i) wide += big(300, 2);  // 16 sqrt(10 * 90000 / 768) = 547.7
