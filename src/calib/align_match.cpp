@@ -67,14 +67,12 @@ constexpr std::size_t kUnknowns = 6, kOfGain = 4, kOfOffset = 5, kOfValue = 6, k
 using PixelTerms = std::array<float, kPixelTerms>;
 using TermProducts = std::array<PixelTerms, kOfValue + 1>;  // of two of them each, summed
 
-constexpr double kNoise_gray = 2;  // of a picture that was smoothed
-
 struct Round {
   Eigen::MatrixXd information;
   Eigen::VectorXd step;
   double correlation;  // at the place before the step
   /// What noise of the pictures leaves unknown of the row; not finite where nothing is known.
-  double sigma_y_px() const { return kNoise_gray * std::sqrt(inverse_of(information)(1, 1)); }
+  double sigma_y_px(double noise_gray) const { return noise_gray * std::sqrt(inverse_of(information)(1, 1)); }
 };
 
 /// Of a row of the patch. Levels count from `level`, so that single floats carry their squares.
@@ -137,9 +135,9 @@ void put_slopes(View<const float> picture, Image<SlopedPixel>& out) {
 }
 
 std::optional<Vec2> align_match(View<const float> left, Vec2 left_px, View<const SlopedPixel> right, Vec2 right_px,
-                                int radius_px) {
+                                int radius_px, const AlignLimits& limits) {
   constexpr int kRounds = 12;
-  constexpr double kLeastCorrelation = 0.9, kConverged_px = 0.003, kMostSigma_px = 0.1;
+  constexpr double kConverged_px = 0.003;
   const double reach_x = radius_px * (1 + kMostStretch + kMostShear);
   if (!inside(left, left_px, radius_px, radius_px)) return {};
   const Patch patch = cut_patch(left, left_px, radius_px);
@@ -155,7 +153,8 @@ std::optional<Vec2> align_match(View<const float> left, Vec2 left_px, View<const
         std::abs(place.stretch - 1) > kMostStretch || std::abs(place.shear) > kMostShear)
       return {};
     if (std::hypot(round.step[0], round.step[1]) > kConverged_px) continue;
-    if (!(round.correlation > kLeastCorrelation && round.sigma_y_px() < kMostSigma_px)) return {};
+    if (!(round.correlation > limits.least_correlation && round.sigma_y_px(limits.noise_gray) < limits.most_sigma_px))
+      return {};
     return place.at;
   }
   return {};

@@ -15,6 +15,13 @@ struct SlopedPixel {
 };
 void put_slopes(View<const float> picture, Image<SlopedPixel>& out);
 
+/// Which matches count.
+struct AlignLimits {
+  double least_correlation = 0.9;
+  double noise_gray = 2;       // of either picture
+  double most_sigma_px = 0.1;  // that this noise leaves unknown of the row
+};
+
 /// Where the patch around `left_px` lies in the right picture, near `right_px`. There it may be stretched and sheared along the
 /// rows (a wall seen from two places), brighter and of more contrast.
 ///
@@ -25,6 +32,6 @@ void put_slopes(View<const float> picture, Image<SlopedPixel>& out);
 /// Source  Lucas, Kanade, "An iterative image registration technique", 1981; with gain and offset as in Baker, Matthews,
 ///         "Lucas-Kanade 20 years on", part 3, 2003
 std::optional<Vec2> align_match(View<const float> left, Vec2 left_px, View<const SlopedPixel> right, Vec2 right_px,
-                                int radius_px);
+                                int radius_px, const AlignLimits& limits = {});
 
 }  // namespace duo

@@ -3,7 +3,7 @@ set(dir ${PROJECT_SOURCE_DIR}/src/calib)
 target_sources(duoptic PRIVATE ${dir}/align_match.cpp ${dir}/judge_scene.cpp ${dir}/moved_points.cpp ${dir}/rig_fit.cpp ${dir}/lens_left_over.cpp ${dir}/normal_equations.cpp ${dir}/opencv_rectified.cpp ${dir}/rectification.cpp ${dir}/rig.cpp
   ${dir}/rig_check.cpp ${dir}/rig_doubts.cpp ${dir}/rig_files.cpp ${dir}/rig_health.cpp ${dir}/rig_json.cpp
   ${dir}/rig_kalibr.cpp ${dir}/rig_lines.cpp ${dir}/rig_opencv.cpp ${dir}/rig_ros.cpp ${dir}/rig_size.cpp
-  ${dir}/rig_two_texts.cpp ${dir}/rig_yaml.cpp ${dir}/row_offsets.cpp ${dir}/scene_matches.cpp
+  ${dir}/rig_two_texts.cpp ${dir}/rig_yaml.cpp ${dir}/row_offsets.cpp ${dir}/scene_matches.cpp ${dir}/scene_patches.cpp
   ${dir}/scene_pose.cpp ${dir}/yaml_reader.cpp)
 target_sources(duoptic PRIVATE ${dir}/board.cpp ${dir}/board_files.cpp ${dir}/board_page.cpp ${dir}/bundle.cpp
   ${dir}/calibrate.cpp ${dir}/calibration_guide.cpp ${dir}/calibration_report.cpp ${dir}/describe.cpp ${dir}/doubt_calibration.cpp ${dir}/find_board.cpp
@@ -21,6 +21,7 @@ duoptic_test(calib/rig ${dir}/rig_test.cpp)
 duoptic_test(calib/rig_files ${dir}/rig_files_test.cpp)
 duoptic_test(calib/rig_imports ${dir}/rig_imports_test.cpp)
 duoptic_test(calib/rig_fit ${dir}/rig_fit_test.cpp ${dir}/rig_fitting_test.cpp)
+duoptic_test(calib/scene_patches ${dir}/scene_patches_test.cpp)
 duoptic_test(calib/rig_health ${dir}/rig_health_test.cpp)
 duoptic_test(calib/row_offsets ${dir}/row_offsets_test.cpp)
 duoptic_test(calib/scene_clips ${dir}/scene_clips_test.cpp SLOW)

@@ -176,7 +176,7 @@ void take_pose(const Rig& rig, const ScenePose& pose, const Evidence& evidence, 
 }
 
 Result<SceneHealth> judge_scene(const Rig& rig, const Evidence& evidence, bool pose_known) {
-  DUO_TRY_ASSIGN(const ScenePose free, fit_scene_pose(rig, kFreePose, evidence.matches, evidence.pairs));
+  DUO_TRY_ASSIGN(const ScenePose free, fit_scene_pose(rig, kFreePose, evidence.matches, evidence.pairs, evidence.of_patches));
   if (behind(rig, free, evidence.matches))
     if (std::string why = why_behind(rig, evidence, pose_known); !why.empty())
       return Error{ErrorCode::kBadInput, std::move(why)};

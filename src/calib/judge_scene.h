@@ -17,6 +17,7 @@ struct Evidence {
   int pairs = 0;
   bool cut = false;
   std::vector<SceneMatch> matches;
+  bool of_patches = false;  // that share pixels with their neighbours
 };
 
 /// Two webcams side by side, of which nothing is known; not metric.

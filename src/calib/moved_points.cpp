@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/judge_scene.h"
 #include "calib/normal_equations.h"
 #include "calib/scene_pose.h"
+#include "core/pool.h"
+#include "stages/gray/gray.h"
 
 namespace duo {
 namespace {
@@ -35,14 +38,78 @@ std::vector<SceneMatch> others_of(const SceneMatches& scene, const std::vector<S
   return out;
 }
 
-std::vector<double> off_rows_px(const std::optional<Rig>& rig, const std::vector<SceneMatch>& agreeing,
-                                const std::vector<SceneMatch>& matches) {
+/// What no lens that both cameras may have leaves of them; where none fits, all.
+void take_lens_off(const SceneMatches& scene, const std::vector<SceneMatch>& agreeing, const std::vector<SceneMatch>& matches,
+                   std::vector<double>& off_px) {
+  constexpr double kNear_px = 3;
+  Rig rig = guessed_rig(scene.size);
+  std::vector<SceneMatch> explained = agreeing;
+  for (int round = 0; round < 3; ++round) {  // the middle of the picture first, and what that explains of the rest
+    const auto pose = fit_scene_pose(rig, kFreePoseAndLens, explained, scene.pairs);
+    if (!pose) return;
+    rig = pose->rig;
+    const std::vector<double> all_px = row_errors_px(rig, scene.matches);
+    std::vector<SceneMatch> more;
+    for (std::size_t i = 0; i < all_px.size(); ++i)
+      if (std::abs(all_px[i]) < kNear_px) more.push_back(scene.matches[i]);
+    if (more.size() < explained.size()) break;
+    explained = std::move(more);
+  }
+  const std::vector<double> by_lens_px = row_errors_px(rig, matches);
+  for (std::size_t i = 0; i < off_px.size(); ++i)
+    if (std::abs(by_lens_px[i]) < std::abs(off_px[i])) off_px[i] = by_lens_px[i];  // not where it sees none: NaN
+}
+
+std::vector<double> off_rows_px(const std::optional<Rig>& rig, const SceneMatches& scene,
+                                const std::vector<SceneMatch>& agreeing, const std::vector<SceneMatch>& matches) {
   if (rig) return row_errors_px(*rig, matches);
   const auto down_px = [](const SceneMatch& m) { return m.right_px.y - m.left_px.y; };
   const MatchPlane plane = plane_of(agreeing, down_px);
   std::vector<double> out;
   for (const SceneMatch& m : matches) out.push_back(down_px(m) - plane.at(m.left_px));
+  take_lens_off(scene, agreeing, matches, out);
   return out;
+}
+
+/// How alike two places are, -1 .. 1; 0 near a border, and where nothing is to be seen.
+double likeness(const Image<std::uint8_t>& left, int lx, int ly, const Image<std::uint8_t>& right, int rx, int ry) {
+  constexpr int kRadius_px = 7;
+  const auto inside = [](const Image<std::uint8_t>& in, int x, int y) {
+    return x >= kRadius_px && y >= kRadius_px && x < in.width() - kRadius_px && y < in.height() - kRadius_px;
+  };
+  if (!inside(left, lx, ly) || !inside(right, rx, ry)) return 0;
+  double a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+  for (int dy = -kRadius_px; dy <= kRadius_px; ++dy)
+    for (int dx = -kRadius_px; dx <= kRadius_px; ++dx) {
+      const double l = left.at(ly + dy, lx + dx), r = right.at(ry + dy, rx + dx);
+      a += l, b += r, aa += l * l, bb += r * r, ab += l * r;
+    }
+  constexpr double kCount = (2 * kRadius_px + 1) * (2 * kRadius_px + 1);
+  const double energy = (aa - a * a / kCount) * (bb - b * b / kCount);
+  return energy > 0 ? (ab - a * b / kCount) / std::sqrt(energy) : 0;
+}
+
+/// Whether most of them look nearly as much alike somewhere on their own row.
+bool stands_on_its_row(const std::vector<OffRow>& group, const Pair& pair) {
+  constexpr double kNearly = 0.9, kReachOfWidth = 0.25;
+  constexpr int kRows_px = 2;
+  Pool pool(1);
+  Image<std::uint8_t> left(pair.left.pixels.size()), right(pair.right.pixels.size());
+  simd::gray(pool, pair.left.pixels, left);
+  simd::gray(pool, pair.right.pixels, right);
+  const int reach_px = static_cast<int>(kReachOfWidth * left.width());
+  const auto rounded = [](double px) { return static_cast<int>(std::lround(px)); };
+  const auto stands = [&](const OffRow& o) {
+    const int lx = rounded(o.match.left_px.x), ly = rounded(o.match.left_px.y), rx = rounded(o.match.right_px.x),
+              ry = rounded(o.match.right_px.y), on_row = rounded(o.match.right_px.y - o.px);
+    double there = 0, here = 0;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) there = std::max(there, likeness(left, lx, ly, right, rx + dx, ry + dy));
+    for (int y = on_row - kRows_px; y <= on_row + kRows_px; ++y)
+      for (int x = rx - reach_px; x <= rx + reach_px; ++x) here = std::max(here, likeness(left, lx, ly, right, x, y));
+    return here > kNearly * there;
+  };
+  return 2 * std::count_if(group.begin(), group.end(), stands) > static_cast<std::ptrdiff_t>(group.size());
 }
 
 }  // namespace
@@ -60,7 +127,8 @@ MatchPlane plane_of(const std::vector<SceneMatch>& matches, double (*value)(cons
   return {plane[0], plane[1], plane[2]};
 }
 
-std::string why_moved(const std::optional<Rig>& rig, const SceneMatches& scene, const std::vector<SceneMatch>& agreeing) {
+std::string why_moved(const std::optional<Rig>& rig, const SceneMatches& scene, const std::vector<SceneMatch>& agreeing,
+                      const Pair& pair) {
   constexpr double kLeast_px = 4, kLeastOfWidth = 0.008;  // off its row: more than any rig that is nearly right
   constexpr double kNearOfWidth = 0.125, kSame_px = 1.5, kSame = 0.2;
   constexpr double kApart_px = 3;  // one place gives several points
@@ -68,7 +136,7 @@ std::string why_moved(const std::optional<Rig>& rig, const SceneMatches& scene, 
   constexpr double kShare = 0.03;  // of all points
   const double width = scene.size.width, least_px = std::max(kLeast_px, kLeastOfWidth * width);
   const std::vector<SceneMatch> others = others_of(scene, agreeing);
-  const std::vector<double> off_px = off_rows_px(rig, agreeing, others);
+  const std::vector<double> off_px = off_rows_px(rig, scene, agreeing, others);
   std::vector<OffRow> off;
   for (std::size_t i = 0; i < others.size(); ++i)
     if (std::abs(off_px[i]) >= least_px) off.push_back({others[i], off_px[i]});
@@ -91,6 +159,7 @@ std::string why_moved(const std::optional<Rig>& rig, const SceneMatches& scene, 
     if (group.size() > most.size()) most = std::move(group);
   }
   if (most.size() < kFewest || static_cast<double>(most.size()) < kShare * static_cast<double>(scene.matches.size())) return {};
+  if (stands_on_its_row(most, pair)) return {};
   Vec2 middle{};
   double sum_px = 0;
   for (const OffRow& o : most) middle.x += o.match.left_px.x, middle.y += o.match.left_px.y, sum_px += o.px;

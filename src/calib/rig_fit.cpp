@@ -215,7 +215,7 @@ std::optional<ScenePose> one_camera_pan(const Rig& rig, const Evidence& evidence
   std::optional<ScenePose> best;
   if (std::abs(health.turned_rad.y) < kLeast_rad) return best;
   for (const SceneFreedom& freedom : {kLeftTurned, kRightTurned}) {
-    const auto pose = fit_scene_pose(rig, freedom, evidence.matches, evidence.pairs);
+    const auto pose = fit_scene_pose(rig, freedom, evidence.matches, evidence.pairs, evidence.of_patches);
     if (!pose) return {};
     const double pan_rad = std::copysign(1, health.turned_rad.y) * pose->turned_rad.y;
     if (pan_rad < std::max(kLeast_rad, kSure_sigmas * pose->turn_sigma_rad.y)) return {};
@@ -224,7 +224,8 @@ std::optional<ScenePose> one_camera_pan(const Rig& rig, const Evidence& evidence
   return best;
 }
 
-RigFit judged(const Rig& rig, const Evidence& evidence) {
+/// `least_row_px`: less is not told.
+RigFit judged(const Rig& rig, const Evidence& evidence, double least_row_px = kGoodRow_px) {
   auto health = judge_scene(rig, evidence);
   if (!health) return misfit(health.error().what);
   std::optional<ScenePose> turned;
@@ -242,7 +243,7 @@ RigFit judged(const Rig& rig, const Evidence& evidence) {
       turned || sure_of_pan(*health) || (could_tell && health->pan_px >= kToldPan_sigmas * health->pan_sigma_px);
   // Few points, on one side of the picture, have rows that are a little off by chance, too.
   constexpr double kEnoughCovered = 0.5;
-  const bool rows_told = health->row_px >= kGoodRow_px && health->covered >= kEnoughCovered;
+  const bool rows_told = health->row_px >= least_row_px && health->covered >= kEnoughCovered;
   if (fit.verdict == RigVerdict::kCanBeImproved && !rows_told && !pan_told) fit.verdict = RigVerdict::kGood;
   if (fit.verdict == RigVerdict::kGood) return rig.metric ? fit : not_metric(std::move(fit));
   fit.what = misfit_text(*health);
@@ -296,13 +297,13 @@ void RigFitting::add(const std::shared_ptr<const Pair>& pair) {
 }
 
 /// None: too few points agree.
-std::optional<RigFit> RigFitting::by_matches(const SceneMatches& scene) const {
+std::optional<RigFit> RigFitting::by_matches(const SceneMatches& scene, const Pair& last) const {
   if (one_picture(scene.matches)) return misfit("left and right are the same picture; give one of each camera");
   const auto matches = agreeing_matches(lenses_, scene);
   if (!matches) return {};
   RigFit fit = by_agreeing(scene, *matches);
   if (!still_ || !fit.what.empty() || (rig_ && !fit.scene)) return fit;  // of a rig that was not judged the rows tell nothing
-  fit.what = why_moved(rig_, scene, *matches);
+  fit.what = why_moved(rig_, scene, *matches, last);
   if (!fit.what.empty()) fit.verdict = RigVerdict::kCanBeImproved;
   return fit;
 }
@@ -327,14 +328,33 @@ std::optional<RigFit> RigFitting::by_first(const std::shared_ptr<const Pair>& pa
     return search == SceneSearch::kThorough || fit->scene || fit->what.empty();
   };
   if (most_ != SceneSearch::kQuick)
-    if (auto fit = by_matches(match_pair(*pair, threads_, SceneSearch::kQuick)); sure(fit, SceneSearch::kQuick)) return fit;
+    if (auto fit = by_matches(match_pair(*pair, threads_, SceneSearch::kQuick), *pair); sure(fit, SceneSearch::kQuick))
+      return fit;
   add(pair);
-  auto fit = by_matches(matcher_->matches());
+  auto fit = by_matches(matcher_->matches(), *pair);
   judged_ = fit && fit->scene;
   return sure(fit, most_) ? fit : std::nullopt;
 }
 
-RigFit RigFitting::by_all(std::span<const std::shared_ptr<const Pair>> others) {
+/// None: it knows no better than three pairs do, or leaves a doubt.
+std::optional<RigFit> RigFitting::by_sum(const PairSum& sum) const {
+  constexpr int kFewestPairs = 4;
+  if (!rig_ || !rig_->metric || most_ == SceneSearch::kQuick || sum.pairs() < kFewestPairs) return {};
+  const SceneMatches scene = match_patches(*rig_, sum);
+  const auto matches = agreeing_matches(lenses_, scene);
+  if (!matches) return {};
+  auto evidence = evidence_of(scene, *matches);
+  if (!evidence) return {};
+  evidence->of_patches = true;
+  // Medians of a dozen places that are known to tenths are off by a quarter of a pixel by chance.
+  RigFit fit = judged(*rig_, *evidence, kUselessRow_px);
+  constexpr double kSure_rad = kLeastPan_rad / 3.5;  // noisier patches know less than their own errors say
+  const bool told = !fit.what.empty() && fit.scene &&
+                    (fit.scene->turned_sigma_rad.y <= kSure_rad || fit.scene->row_px >= kUselessRow_px);
+  return told ? std::optional(std::move(fit)) : std::nullopt;
+}
+
+RigFit RigFitting::by_all(std::span<const std::shared_ptr<const Pair>> others, const PairSum& sum) {
   // A quick search that found enough in the first finds the same in the others.
   const bool same = most_ == SceneSearch::kQuick && judged_;
   for (const auto& pair : others)
@@ -344,7 +364,10 @@ RigFit RigFitting::by_all(std::span<const std::shared_ptr<const Pair>> others) {
       add(pair);
   if (!matcher_ || !last_) return untold(rig_);
   const SceneMatches scene = matcher_->matches();
-  if (auto fit = by_matches(scene)) return *fit;
+  const auto fit = by_matches(scene, *last_);
+  if (fit && (!fit->what.empty() || surely_good(rig_, *fit))) return *fit;
+  if (auto more = by_sum(sum)) return *more;
+  if (fit) return *fit;
   // Why they do not agree is told by more points than a quick search finds, whose many tell that they are of one scene.
   constexpr std::size_t kMany = 6;
   if (most_ == SceneSearch::kQuick && alike_in(scene) >= kMany && are_of_one_scene(scene)) return untold(rig_);
@@ -355,8 +378,10 @@ RigFit RigFitting::by_all(std::span<const std::shared_ptr<const Pair>> others) {
 RigFit rig_fit(const std::optional<Rig>& rig, std::span<const std::shared_ptr<const Pair>> pairs, int threads) {
   if (pairs.empty()) return {};
   RigFitting fitting(rig, pairs[0]->left.pixels.size(), threads);
-  const auto fit = fitting.by_first(pairs[0]);
-  return fit ? *fit : fitting.by_all(pairs.subspan(1));
+  if (const auto fit = fitting.by_first(pairs[0])) return *fit;
+  PairSum sum(pairs[0]->left.pixels.size());
+  for (const auto& pair : pairs) sum.add(*pair);
+  return fitting.by_all(pairs.subspan(1), sum);
 }
 
 }  // namespace duo

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/scene_matches.h"
+#include "calib/scene_patches.h"
 #include "duoptic/rig_fit.h"
 
 namespace duo {
@@ -20,12 +21,14 @@ class RigFitting {
 
   /// What the first pair tells beyond doubt, right or wrong; none where others have to be looked at, too. To be called once.
   std::optional<RigFit> by_first(const std::shared_ptr<const Pair>& pair);
-  /// What the first and these tell, after by_first() told nothing.
-  RigFit by_all(std::span<const std::shared_ptr<const Pair>> others);
+  /// What the first and these tell, after by_first() told nothing; where they leave a doubt, what the sum of all pairs so far
+  /// tells.
+  RigFit by_all(std::span<const std::shared_ptr<const Pair>> others, const PairSum& sum);
 
  private:
-  std::optional<RigFit> by_matches(const SceneMatches& scene) const;
+  std::optional<RigFit> by_matches(const SceneMatches& scene, const Pair& last) const;
   RigFit by_agreeing(const SceneMatches& scene, const std::vector<SceneMatch>& matches) const;
+  std::optional<RigFit> by_sum(const PairSum& sum) const;
   void add(const std::shared_ptr<const Pair>& pair);
 
   const std::optional<Rig> rig_;

@@ -46,7 +46,7 @@ Image<Rgb8> dimmed(const Image<Rgb8>& picture, double noise, std::mt19937& rando
 RigFit by_few_points(const std::optional<Rig>& rig, const std::vector<PairPointer>& pairs) {
   RigFitting fitting(rig, pairs[0]->left.pixels.size(), 1, SceneSearch::kQuick);
   const auto fit = fitting.by_first(pairs[0]);
-  return fit ? *fit : fitting.by_all(std::span(pairs).subspan(1));
+  return fit ? *fit : fitting.by_all(std::span(pairs).subspan(1), PairSum(pairs[0]->left.pixels.size()));
 }
 
 TEST(RigFitting, FewPointsTellWhatAllTell) {
@@ -156,7 +156,7 @@ TEST(RigFitting, WhatMovedBetweenTwoPhotosIsTold) {
     RigFitting fitting(with_rig ? std::optional(ideal.rig) : std::nullopt, pair->left.pixels.size(), 1, SceneSearch::kThorough,
                        still);
     const auto fit = fitting.by_first(pair);
-    return fit ? *fit : fitting.by_all({});
+    return fit ? *fit : fitting.by_all({}, PairSum(pair->left.pixels.size()));
   };
   for (const bool with_rig : {true, false}) {
     SCOPED_TRACE(with_rig);

@@ -13,6 +13,7 @@ namespace duo {
 /// One point in both raw pictures.
 struct SceneMatch {
   Vec2 left_px, right_px;
+  double weight = 1;  // of its row: a point's, known to a few hundredths of a pixel, over what this one is known to
 };
 
 struct SceneMatches {

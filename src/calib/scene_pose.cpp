@@ -128,12 +128,19 @@ class Problem {
   const std::vector<std::size_t>& free() const { return free_; }
   int repeats() const { return repeats_; }
 
+  /// By their weights.
   std::vector<double> errors(const ScenePlace& at) const {
     const Rig rig = moved(start_, at);
-    return lens_held_ ? row_errors_px(rig, rays_) : row_errors_px(rig, rays_of(rig, matches_));
+    std::vector<double> out = lens_held_ ? row_errors_px(rig, rays_) : row_errors_px(rig, rays_of(rig, matches_));
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] *= matches_[i].weight;
+    return out;
   }
 
-  Eigen::MatrixXd slopes(const ScenePlace& at) const { return lens_held_ ? slopes_by_pose(at) : slopes_by_steps(at); }
+  Eigen::MatrixXd slopes(const ScenePlace& at) const {
+    Eigen::MatrixXd out = lens_held_ ? slopes_by_pose(at) : slopes_by_steps(at);
+    for (std::size_t i = 0; i < matches_.size(); ++i) out.row(static_cast<Eigen::Index>(i)) *= matches_[i].weight;
+    return out;
+  }
 
  private:
   static constexpr double kStep = 1e-6;
@@ -318,7 +325,7 @@ Result<std::vector<SceneMatch>> agreeing_matches(const Rig& lenses, const SceneM
 }
 
 Result<ScenePose> fit_scene_pose(const Rig& start, const SceneFreedom& freedom, const std::vector<SceneMatch>& matches,
-                                 int pairs) {
+                                 int pairs, bool neighbours_alike) {
   constexpr int kIndependent = 50;
   const bool lens_free = freedom[kFocal] > 0;
   const int repeats = lens_free ? std::max(pairs, static_cast<int>(matches.size()) / kIndependent) : pairs;
@@ -338,14 +345,17 @@ Result<ScenePose> fit_scene_pose(const Rig& start, const SceneFreedom& freedom, 
   pose.rig = moved(start, solution.at);
   pose.turned_rad = turned(start, pose.rig);
   const std::vector<double> errors = problem.errors(solution.at);
-  double sum = 0;
+  double sum = 0, weights = 0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (tukey_weight(errors[i], solution.sigma_px) == 0) continue;
     ++pose.used;
     sum += errors[i] * errors[i];
+    weights += square(matches[i].weight);
   }
   pose.row_rms_px = pose.used > 0 ? std::sqrt(sum / pose.used) : 0;
-  const double alike = lens_free ? 1 : (1 + pose.used * square(systematic_px(start.left.size) / solution.sigma_px)) / repeats;
+  const double alike =
+      lens_free ? 1
+                : (1 + weights * square(systematic_px(start.left.size) / solution.sigma_px)) / (neighbours_alike ? 1 : repeats);
   pose.turn_sigma_rad = turn_sigma(start, problem, solution.at, alike * solution.covariance);
   return pose;
 }

@@ -10,13 +10,15 @@ namespace duo {
 namespace {
 
 constexpr int kWatchedPairs = 3;
-constexpr TimeNs kBetween_ns = 200'000'000, kFirstCounts_ns = 100'000'000, kAllCount_ns = 800'000'000,
+constexpr TimeNs kBetween_ns = 200'000'000, kSummed_ns = 600'000'000, kFirstCounts_ns = 100'000'000, kAllCount_ns = 800'000'000,
                  kAgain_ns = 60'000'000'000;
 
 RigJudge judge_of_rig(const std::optional<Rig>& rig, Size size, SceneSearch most, bool still) {
   auto fitting = std::make_shared<RigFitting>(rig, size, 1, most, still);
   return {[fitting](const std::shared_ptr<const Pair>& first) { return fitting->by_first(first); },
-          [fitting](std::span<const std::shared_ptr<const Pair>> others) { return fitting->by_all(others); }};
+          [fitting](std::span<const std::shared_ptr<const Pair>> others, const PairSum& sum) {
+            return fitting->by_all(others, sum);
+          }};
 }
 
 }  // namespace
@@ -32,10 +34,12 @@ const RigFit* RigWatch::see(const std::shared_ptr<const Pair>& pair, bool last) 
     start_ns_ = pair->left.t_ns;
     looked_at_ = 1;
     judge_ = judge_of_(pair->left.pixels.size());
+    sum_ = std::make_shared<PairSum>(pair->left.pixels.size());
     start(Step::kFirst, [judge = judge_.by_first, pair] { return judge(pair); });
   }
   const TimeNs since_ns = pair->left.t_ns - start_ns_;
   const bool gathers = step_ == Step::kFirst || step_ == Step::kGather;
+  if (gathers && since_ns < kSummed_ns) sum_->add(*pair);
   if (gathers && looked_at_ < kWatchedPairs && since_ns >= looked_at_ * kBetween_ns) {
     others_.push_back(pair);
     ++looked_at_;
@@ -52,7 +56,7 @@ const RigFit* RigWatch::step(TimeNs since_ns, bool last) {
   const auto counts = [&](TimeNs from_ns) { return last || (!live_ && since_ns >= from_ns); };
   const RigFit* news = nullptr;
   if (step_ == Step::kFirst && (counts(kFirstCounts_ns) || ended())) news = take(kFirstCounts_ns);
-  if (step_ == Step::kGather && (last || looked_at_ == kWatchedPairs || since_ns >= kAllCount_ns)) start_all();
+  if (step_ == Step::kGather && (last || since_ns >= kSummed_ns)) start_all();
   if (step_ == Step::kAll && (counts(kAllCount_ns) || ended())) news = take(kAllCount_ns);
   if (step_ == Step::kKnown && (live_ || counts(counts_from_ns_))) {
     fit_ = **found_;
@@ -62,7 +66,8 @@ const RigFit* RigWatch::step(TimeNs since_ns, bool last) {
 }
 
 void RigWatch::start_all() {
-  start(Step::kAll, [judge = judge_.by_all, others = std::move(others_)] { return std::optional(judge(others)); });
+  start(Step::kAll,
+        [judge = judge_.by_all, others = std::move(others_), sum = sum_] { return std::optional(judge(others, *sum)); });
 }
 
 void RigWatch::start(Step step, std::function<std::optional<RigFit>()> judge) {
@@ -88,6 +93,7 @@ const RigFit* RigWatch::take(TimeNs counts_from_ns) {
   step_ = by_first && !*found_ ? Step::kGather : Step::kKnown;
   if (step_ == Step::kGather) return nullptr;
   others_.clear();
+  sum_.reset();
   judge_ = {};
   counts_from_ns_ = counts_from_ns;
   const RigFit& found = **found_;

@@ -144,7 +144,7 @@ std::optional<RigFit> fit_where_thrown(bool by_first, bool by_all) {
               if (by_first) throw std::bad_alloc();
               return std::nullopt;
             },
-            [=](std::span<const std::shared_ptr<const Pair>> others) {
+            [=](std::span<const std::shared_ptr<const Pair>> others, const PairSum&) {
               EXPECT_EQ(others.size(), 2u);
               if (by_all) throw std::bad_alloc();
               return wrong;
