@@ -28,6 +28,11 @@ struct SgmMaps {
 /// Whether a pair looks clear by what was measured of it, or by what the parameters ask for.
 bool looks_clear(const SgmParams& params, int noise_q4, int blur_q4);
 
+/// Whether the last fraction is looked for in pictures that are not clear. By itself only in those that were rectified here
+/// (`masked`): of pictures that come rectified it is not known what lies between camera and matcher, and half a pixel was
+/// exceeded on 7.0 instead of 4.5 % of cones.
+bool refines(const SgmParams& params, bool masked);
+
 /// Row y of margins becomes one of confidences: confidence_of() by what disparities differ in 7x7 pixels, holes aside; 0 where
 /// there is no disparity. A margin says which surfaces are there, and not on which of them a pixel beside a step lies.
 /// `columns`: scratch, two rows as wide as the picture.

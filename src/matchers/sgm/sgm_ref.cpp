@@ -60,7 +60,7 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max
   ref::semi_global(in, {left_winner, right_winner, fine, out.confidence});
   timer.stage("semi_global");
   // What follows the check writes to another image than it reads: the check stays in the one from which it ends in d_q4.
-  const bool refine = params_.refine != 0 && !clear_;
+  const bool refine = refines(params_, pair.masked()) && !clear_;
   const View<std::uint16_t> smoothed = refine ? fine : out.d_q4, before = refine ? out.d_q4 : fine,
                             checked = params_.smooth != 0 ? before : smoothed;
   ref::check_left_right({left_winner, right_winner, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach},

@@ -60,7 +60,7 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max
   const int h = pair.size().height;
   const RowBand wanted = rows.within(h);
   rows = out.confidence.empty() ? wanted : wanted.grown(kConfidenceReach, h);
-  const bool refine = params_.refine != 0 && !clear_;
+  const bool refine = refines(params_, pair.masked()) && !clear_;
   const RowBand smoothed_rows = refine ? rows.grown(LucasKanade::kRows, h) : rows;
   const RowBand checked_rows = params_.smooth != 0 ? smoothed_rows.grown(WeightedMedian::kRadius, h) : smoothed_rows;
   const RowBand joined = checked_rows.grown(params_.speckle, h);

@@ -57,6 +57,30 @@ void expect_engines_agree(Size size, int max_disparity, int paths, bool masked, 
   });
 }
 
+TEST(Sgm, TheLastFractionIsOfPicturesThatWereRectifiedHere) {
+  const Size size{90, 40};
+  const BoxScene scene(size);
+  const Image<std::uint8_t> inside = test::constant<std::uint8_t>(size, 255);
+  StageTimer timer;
+  const auto matched = [&](int refine, bool masked) {
+    GrayPair pair{scene.left, scene.right};
+    if (masked) pair.left_inside = inside, pair.right_inside = inside;
+    Image<std::uint16_t> out(size);
+    ref::Sgm(*sgm_params("default", {{"refine", refine}, {"clear", 0}}), {size, 20, masked}).match(pair, {out}, timer);
+    return out;
+  };
+  const auto same = [](const Image<std::uint16_t>& a, const Image<std::uint16_t>& b) {
+    for (int y = 0; y < a.height(); ++y)
+      if (!std::equal(a.row(y), a.row(y) + a.width(), b.row(y))) return false;
+    return true;
+  };
+  const Image<std::uint16_t> without = matched(0, true), with = matched(2, true);
+  EXPECT_FALSE(same(without, with));
+  EXPECT_TRUE(same(matched(1, true), with));
+  EXPECT_TRUE(same(matched(1, false), matched(0, false)));
+  EXPECT_FALSE(same(matched(2, false), matched(0, false)));
+}
+
 // By hand (stages/types/noise.h): of 15 sixteenths of coding noise 15 (15 - 10) / 10 = 7.5 count, of 24 all, of 10 nothing. The
 // picture's own noise counts where it is more; noise of either kind is not clear.
 TEST(Sgm, NoiseIsAtLeastThatOfTheCoding) {

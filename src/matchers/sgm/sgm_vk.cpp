@@ -75,7 +75,7 @@ void Sgm::record(Recorder& recorder, const Input& pair, const Output& out) const
   const Size size = setup_.size;
   record_winners(recorder, pair, out.confidence);
   // What follows the check writes to another image than it reads: the check starts in the one from which it ends in d_q4.
-  const bool refine = params_.refine != 0;
+  const bool refine = refines(params_, setup_.masked);
   const auto between = whole<std::uint16_t>(maps_.checked);
   const auto smoothed = refine ? between : out.d_q4, before = refine ? out.d_q4 : between;
   const auto checked = params_.smooth != 0 ? before : smoothed;

@@ -69,7 +69,7 @@ void expect_sgm_agrees(vk::Device& device, const SgmParams& params, const MatchS
 TEST(SgmVk, PresetsAgree) {
   test::each_device([](vk::Device& device, const std::string& where) {
     for (const char* preset : {"default", "paths8"}) {
-      const SgmParams params = *sgm_params(preset, {{"refine", 1}});
+      const SgmParams params = *sgm_params(preset, {{"refine", 2}});
       expect_sgm_agrees(device, params, {{90, 30}, 20, false}, false, where);
       expect_sgm_agrees(device, params, {{33, 17}, 70, true}, true, where);
       expect_sgm_agrees(device, params, {{1, 1}, 1, true}, true, where);

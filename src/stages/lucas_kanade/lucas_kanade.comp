@@ -4,7 +4,7 @@
 #extension GL_EXT_shader_16bit_storage : require
 #include "stages/lucas_kanade/lucas_kanade_params.h"
 
-// Taps of a tile and what surrounds it are worked out once. Moves 4 bytes a pixel; about 1,000 operations, most of them sums.
+// Taps of a tile and what surrounds it are worked out once. Moves 4 bytes a pixel; about 600 operations, most of them sums.
 layout(local_size_x = kGroupWidth, local_size_y = kGroupHeight) in;
 layout(std430, binding = 0) readonly buffer Left { uint8_t left[]; };
 layout(std430, binding = 1) readonly buffer Right { uint8_t right[]; };
@@ -14,8 +14,8 @@ layout(std430, binding = 4) writeonly buffer Dst { uint16_t dst[]; };
 layout(push_constant) uniform Push { LucasKanadePush p; };
 
 const int kNone = 0xFFFF;
-const int kRadius = kLucasKanadeRadius;
-const int kTileWidth = kGroupWidth + 2 * kRadius, kTileHeight = kGroupHeight / 2 + kRadius;  // of pairs of rows
+const int kReach = kLucasKanadeReach;
+const int kTileWidth = kGroupWidth / 2 + 2 * kReach, kTileHeight = kGroupHeight / 2 + 2 * kReach;
 shared ivec2 tile[kTileHeight * kTileWidth];  // pull, weight
 
 int index(Plane plane, ivec2 at) { return plane.offset + at.y * plane.stride + at.x; }
@@ -38,22 +38,23 @@ ivec2 tap(ivec2 at) {
 
 int step_q4(int centre) {
   ivec2 sum = ivec2(0);
-  for (int v = -kRadius / 2; v <= kRadius / 2; ++v)
-    for (int u = -kRadius; u <= kRadius; ++u) sum += tile[centre + v * kTileWidth + u];
+  for (int v = -kReach; v <= kReach; ++v)
+    for (int u = -kReach; u <= kReach; ++u) sum += tile[centre + v * kTileWidth + u];
   if (sum.y == 0) return 0;
   const int size = min(kLucasKanadeMost_q4, (2 * abs(sum.x) / sum.y + 1) / 2);
   return sum.x > 0 ? -size : size;
 }
 
 void main() {
-  const ivec2 corner = ivec2(gl_WorkGroupID.xy) * ivec2(kGroupWidth, kGroupHeight) - kRadius;
+  const ivec2 corner = ivec2(gl_WorkGroupID.xy) * ivec2(kGroupWidth, kGroupHeight) / 2 - kReach;
   for (int i = int(gl_LocalInvocationIndex); i < kTileWidth * kTileHeight; i += kGroupWidth * kGroupHeight)
-    tile[i] = tap(corner + ivec2(i % kTileWidth, i / kTileWidth * 2 + (i % kTileWidth & 1)));
+    tile[i] = tap(2 * (corner + ivec2(i % kTileWidth, i / kTileWidth)));
   barrier();
 
   const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
   if (at.x >= p.width || at.y >= p.height) return;
-  const int centre = (int(gl_LocalInvocationID.y) + kRadius) / 2 * kTileWidth + int(gl_LocalInvocationID.x) + kRadius;
+  const ivec2 in_tile = ivec2(gl_LocalInvocationID.xy) / 2 + kReach;
+  const int centre = in_tile.y * kTileWidth + in_tile.x;
   int d = int(d_q4[index(p.d_q4, at)]);
   if (d != kNone && clear <= 0) d = clamp(d + step_q4(centre), 0, p.most_q4);
   dst[index(p.dst, at)] = uint16_t(d);

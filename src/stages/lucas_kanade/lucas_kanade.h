@@ -13,15 +13,15 @@ namespace duo {
 
 /// One step of least squares towards the disparity at which both views' gray values are alike.
 ///
-/// Tap: a pixel with a disparity, of even row and column or of odd row and column, whose two neighbours in the row are in the
-/// picture, as are, in the right view, the two pixels that its place x - d lies between and one more on either side. e: left
-/// value minus the right one at that place, linear between its pixels. g: mean of both views' central differences there, the
-/// right view's linear between pixels, too. A tap with |e| >= kMostDifference does not count: it sees something else. Over the
-/// taps in the columns x +- kRadius and in the pair of rows 2k, 2k + 1 of the pixel and the kRadius / 2 pairs above and below,
-/// each at its own disparity, so that a slant changes nothing: step = -5/2 sum(e g w) / sum(g^2 w + 1/20), rounded to 1/16 px
-/// and held to +-kMost_q4; the result is held to 0 .. max_disparity - 1. w = 1 / (g^2 + 8): paths flatten where there is little
-/// to see, and there gradients of shading must not be outvoted by a few strong ones, whose disparities are right already. These
-/// still hold the others back, and noise in g makes steps short, hence 5/2. Where there is no gradient nothing changes.
+/// Tap: a pixel of even row and column with a disparity, whose two neighbours in the row are in the picture, as are, in the
+/// right view, the two pixels that its place x - d lies between and one more on either side. e: left value minus the right one
+/// at that place, linear between its pixels. g: mean of both views' central differences there, the right view's linear between
+/// pixels, too. A tap with |e| >= kMostDifference does not count: it sees something else. A step is one of the four pixels of
+/// rows 2k, 2k + 1 and columns 2j, 2j + 1, over the taps of the rows 2k +- 2 kReach and the columns 2j +- 2 kReach, each at its
+/// own disparity, so that a slant changes nothing: step = -5/2 sum(e g w) / sum(g^2 w + 1/20), rounded to 1/16 px and held to
+/// +-kMost_q4; the result is held to 0 .. max_disparity - 1. w = 1 / (g^2 + 8): paths flatten where there is little to see, and
+/// there gradients of shading must not be outvoted by a few strong ones, whose disparities are right already. These still hold
+/// the others back, and noise in g makes steps short, hence 5/2. Where there is no gradient nothing changes.
 ///
 /// Shape    all H x W; dst is not the same memory as d_q4
 /// Units    d_q4 1/16 px, Disparity::kNone = hole, which stays one; e in gray levels, g in those per px
@@ -30,11 +30,10 @@ namespace duo {
 ///          lucas_kanade_params.h; sums stay below 2^26
 /// Source   Lucas, Kanade, "An iterative image registration technique with an application to stereo vision", 1981; a step past
 ///          the least sum as in Young, "Iterative methods for solving partial difference equations of elliptic type", 1954
-///          (over-relaxation); taps at disparities of their own, each second pixel, are ours
+///          (over-relaxation); taps at disparities of their own, each fourth pixel, are ours
 struct LucasKanade {
-  static constexpr int kRadius = kLucasKanadeRadius, kMostDifference = kLucasKanadeMostDifference,
-                       kMost_q4 = kLucasKanadeMost_q4;
-  static constexpr int kRows = kRadius + 1;  // what a row depends on, up and down
+  static constexpr int kReach = kLucasKanadeReach, kMostDifference = kLucasKanadeMostDifference, kMost_q4 = kLucasKanadeMost_q4;
+  static constexpr int kRows = 2 * kReach + 1;  // what a row depends on, up and down
   static constexpr int kMostGradient_q2 = 510;
 
   View<const std::uint8_t> left, right;
@@ -60,10 +59,11 @@ struct LucasKanadeScratch {
   /// For pictures of this size, and smaller ones.
   LucasKanadeScratch(Size size, int threads);
 
-  static constexpr int kRows = LucasKanade::kRadius + 1, kBefore = 32;  // of taps in use; columns around a row
+  static constexpr int kRows = 2 * LucasKanade::kReach + 1, kBefore = 32;  // rows of taps in use; taps around a row
   struct Thread {
-    Image<std::int16_t> pull, weight;  // of taps of a pair of rows: [row / 2 % kRows]
-    Image<std::int32_t> sums;          // of both over the rows of the window, of five columns of them; last the steps
+    Image<std::int32_t> pull, weight;  // of rows of taps: [row % kRows]
+    Image<std::int32_t> sums;          // of both over the rows of the window, and of three columns of them
+    Image<std::int32_t> steps;         // of a pair of rows, twice 16 bits a tap
   };
   std::vector<Thread> threads;
 };

@@ -9,7 +9,7 @@ namespace duo {
 #define DUO_INLINE
 #endif
 
-const int kLucasKanadeRadius = 12;         // columns and rows of the window to each side
+const int kLucasKanadeReach = 6;           // taps of the window to each side
 const int kLucasKanadeMostDifference = 8;  // gray levels
 const int kLucasKanadeMost_q4 = 6;         // 1/16 px
 

@@ -15,6 +15,7 @@ int LucasKanadeSums::step_q4() const {
 namespace ref {
 
 LucasKanadeSums lucas_kanade_tap(const LucasKanade& in, int y, int x) {
+  if (x % 2 != 0 || y % 2 != 0) return {};
   const int w = in.d_q4.width(), d = in.d_q4.at(y, x);
   if (d == Disparity::kNone || x == 0 || x + 1 >= w) return {};
   const int at_q4 = 16 * x - d, r = at_q4 >> 4, f = at_q4 & 15;
@@ -36,9 +37,9 @@ void lucas_kanade(const LucasKanade& in, View<std::uint16_t> dst) {
       dst.at(y, x) = in.d_q4.at(y, x);
       if (dst.at(y, x) == Disparity::kNone) continue;
       LucasKanadeSums sums;
-      for (int pair = y / 2 * 2 - LucasKanade::kRadius; pair <= y / 2 * 2 + LucasKanade::kRadius; pair += 2)
-        for (int u = std::max(x - LucasKanade::kRadius, 0); u <= std::min(x + LucasKanade::kRadius, size.width - 1); ++u)
-          if (const int v = pair + u % 2; v >= 0 && v < size.height) sums.add(lucas_kanade_tap(in, v, u));
+      for (int v = y / 2 - LucasKanade::kReach; v <= y / 2 + LucasKanade::kReach; ++v)
+        for (int u = x / 2 - LucasKanade::kReach; u <= x / 2 + LucasKanade::kReach; ++u)
+          if (v >= 0 && 2 * v < size.height && u >= 0 && 2 * u < size.width) sums.add(lucas_kanade_tap(in, 2 * v, 2 * u));
       dst.at(y, x) = static_cast<std::uint16_t>(std::clamp(dst.at(y, x) + sums.step_q4(), 0, 16 * (in.max_disparity - 1)));
     }
 }
