@@ -22,6 +22,14 @@ std::optional<double> Scene::off_back_m(JointId id, Vec3 p) const {
   return -q.z - default_height_m(trunk, q.y, width_m()) - kHalfWrist_m;
 }
 
+std::optional<double> Scene::off_hanging_m(JointId id, Vec3 p, Vec3 shoulder) const {
+  constexpr double kFromSide = 0.55, kElbowOut_m = 0.045, kHandOut_m = 0.06;
+  const double away = is_left(id) ? trunk.across.z : -trunk.across.z;
+  if (!is_arm(id) || away < kFromSide) return std::nullopt;
+  const double out = dot(p - shoulder, trunk.across);
+  return (is_left(id) ? out : -out) - (is_hand_or_wrist(id) ? kHandOut_m : kElbowOut_m);
+}
+
 void leave_upper_arm(Scene& scene, const Limb& arm) {
   constexpr double kHalfUpperArm_m = 0.05;
   if (!scene.off_back_m(arm[2], scene.expected[arm[2]].p)) return;

@@ -348,7 +348,8 @@ void Body::publish(const FrameView& frame, Person& person) const {
   const auto between = [&](JointId id, JointId a, JointId b) {
     const Covariance3 &ca = person.joints[index_of(a)].cov_m2, &cb = person.joints[index_of(b)].cov_m2;
     const Covariance3 c = {(ca.xx + cb.xx) / 4, 0, 0, (ca.yy + cb.yy) / 4, 0, (ca.zz + cb.zz) / 4};
-    const bool seen = states_[a].sure || states_[b].sure;
+    const Vec2 at = frame.depth.geometry->project({places[id].x, places[id].y, std::max(places[id].z, kNear_m)});
+    const bool seen = (states_[a].sure || states_[b].sure) && frame.shows(at);
     fill(id, places[id], c, seen ? JointState::kSeen : JointState::kInferred, 0.5 * (states_[a].step + states_[b].step));
   };
   between(kPelvis, kLeftHip, kRightHip);

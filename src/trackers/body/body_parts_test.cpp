@@ -132,6 +132,8 @@ SeenBody upright(Vec2 middle_px, double px_per_m) {
   put(BodyPoint::kRightShoulder, -0.2, -0.4);
   put(BodyPoint::kLeftHip, 0.1, 0.1);
   put(BodyPoint::kRightHip, -0.1, 0.1);
+  put(BodyPoint::kLeftElbow, 0.2, -0.15);
+  put(BodyPoint::kLeftKnee, 0.1, 0.5);
   body.next = {0, 0, 256 * 128, 0};  // half a side of 128 px: 1 px of the crop is 1 px
   return body;
 }
@@ -155,6 +157,9 @@ TEST(BodyPoints, JointsLieBesideTheMarks) {
   EXPECT_NEAR(back[kHead].at_px.x, points[kHead].at_px.x - 3, 0.01);
   EXPECT_NEAR(back[kHead].at_px.y, points[kHead].at_px.y, 0.01);
   EXPECT_EQ(back[kLeftShoulder].at_px.x, points[kLeftShoulder].at_px.x);
+  // 1 % of an upper arm of 25 cm back to the shoulder's mark, 3 % of a thigh of 40 cm to the hip's.
+  EXPECT_NEAR(points[kLeftElbow].at_px.y, 85 - 0.25, 0.01);
+  EXPECT_NEAR(points[kLeftKnee].at_px.y, 150 - 1.2, 0.01);
 }
 
 TEST(BodyTrunk, SidesAreExchangedWhereTheOtherSidesAreExpected) {
@@ -281,6 +286,27 @@ TEST(BodyFit, AForearmTakenForTooLongDoesNotPushAHiddenHandOffTheBack) {
     return distance(fitted.places[kLeftWrist], places[kLeftWrist]);
   };
   EXPECT_LT(off_m(HandSight::kAbsent), 0.75 * off_m(HandSight::kSeen));
+}
+
+TEST(BodyFit, AnArmThatTheTrunkHidesFromTheSideHangsBesideIt) {
+  // Turned by 90 degrees, the left side away; the left arm is hidden, and was guessed 15 cm towards the trunk.
+  Places places = standing();
+  for (Vec3& p : places.all) p = {2 - p.z, p.y, 2 + p.x};
+  const auto off_m = [&](bool from_side) {
+    Standing s(places, {0, 0, 1});
+    if (!from_side) s.scene.trunk.across = {1, 0, 0};
+    Choices chosen;
+    choose(s.scene, chosen);
+    for (const JointId id : {kLeftWrist, kLeftHand}) {
+      const Vec3 guess = places[id] - Vec3{0, 0, 0.15};
+      chosen[id] = {guess, false, 0};
+      s.scene.expected[id] = {guess, 0.1, 10};
+    }
+    Fitted fitted;
+    Fit().run(s.scene, chosen, {}, fitted);
+    return distance(fitted.places[kLeftWrist], places[kLeftWrist]);
+  };
+  EXPECT_LT(off_m(true), 0.8 * off_m(false));
 }
 
 TEST(BodyFit, BonesGetTheirLengthsAndKeepTheirDirections) {

@@ -12,8 +12,9 @@ namespace duo::body {
 constexpr double kDepthSigma_px = 0.35;
 constexpr double kSameSurface = -6;  // on what another limb, or somebody else, stands on
 constexpr double kMostExpectedRoot = 12, kMostExpected = 4,
-                 kMostExpectedEnd = 3;  // by which the place expected may count against
-constexpr double kBackSigma_m = 0.06;   // of a hidden hand on the back, one standard deviation
+                 kMostExpectedEnd = 3;                                 // by which the place expected may count against
+constexpr double kBackSigma_m = 0.06;                                  // of a hidden hand on the back, one standard deviation
+constexpr double kHangingSigma_m = 0.09, kHangingElbowSigma_m = 0.06;  // of an arm that the trunk hides from the side
 
 struct Candidate {
   Vec3 p;

@@ -250,6 +250,22 @@ TEST(BodyChoose, AnElbowIsNotOnSomebodyElse) {
   EXPECT_FALSE(chosen[kRightElbow].on_surface);
 }
 
+TEST(BodyChoose, AnArmThatTheNetworkSaysIsHiddenIsOnNoSurface) {
+  Standing s(standing());
+  for (const JointId id : {kLeftElbow, kLeftWrist, kLeftHand}) {
+    s.scene.points[id].visibility = 0.1;
+    s.scene.expected[id].hidden = 10;
+  }
+  Choices chosen;
+  choose(s.scene, chosen);
+  for (const JointId id : {kLeftElbow, kLeftWrist, kLeftHand}) EXPECT_FALSE(chosen[id].on_surface) << name_of(id);
+  s.scene.hands[0] = HandSight::kSeen;  // its own network knows better
+  choose(s.scene, chosen);
+  EXPECT_FALSE(chosen[kLeftElbow].on_surface);
+  EXPECT_TRUE(chosen[kLeftWrist].on_surface);
+  EXPECT_TRUE(chosen[kLeftHand].on_surface);
+}
+
 TEST(BodyChoose, AHandBehindTheBackIsNotOnTheBelly) {
   Places places = standing();
   places[kLeftElbow] = {0.26, -0.2, 2.08};

@@ -61,6 +61,7 @@ class Terms {
       if (chosen_[id].on_surface) continue;
       add_guess(id);
       add_back(id);
+      add_hanging(id);
     }
     for (const FitBone& bone : kFitBones) add_bone(bone);
     add_trunk();
@@ -135,6 +136,15 @@ class Terms {
   void add_back(JointId id) {
     const auto off = scene_.off_back_m(id, now_[id]);
     if (off) add(*off / kBackSigma_m, {{at(id), (-1 / kBackSigma_m) * scene_.trunk.front}});
+  }
+
+  /// An arm behind the trunk hangs beside it, and does not pull at its shoulder.
+  void add_hanging(JointId id) {
+    const JointId shoulder = is_left(id) ? JointId::kLeftShoulder : JointId::kRightShoulder;
+    const auto off = scene_.off_hanging_m(id, now_[id], now_[shoulder]);
+    if (!off) return;
+    const double s = (is_left(id) ? 1 : -1) / (is_hand_or_wrist(id) ? kHangingSigma_m : kHangingElbowSigma_m);
+    add(std::abs(s) * *off, {{at(id), s * scene_.trunk.across}});
   }
 
   void add_length(JointId a, JointId b, double length, double sigma, double weight = 1) {

@@ -85,6 +85,10 @@ inline double to_segment(Vec3 p, Vec3 a, Vec3 b) {
 constexpr double unrest_m(JointId id) {
   using enum JointId;
   switch (id) {
+    case kHead:
+      return 0.035;
+    case kLeftShoulder:
+    case kRightShoulder:
     case kLeftElbow:
     case kRightElbow:
       return 0.026;

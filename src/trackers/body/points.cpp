@@ -33,16 +33,19 @@ struct Offsets {
 constexpr Offsets kLiteOffsets = {{0.053, 0.033}, {-0.085, 0}, {-0.145, 0}};
 constexpr Offsets kFullOffsets = {{0.06, 0.027}, {-0.055, 0.01}, {-0.135, 0}};
 
-// Elbows, wrists and knees are marked a little beyond their centres, by this share of the bone.
-constexpr double kBack = 0.03;
+// Elbows, wrists and knees are marked a little beyond their centres, by a share of the bone.
+constexpr double kBack = 0.03, kElbowBack = 0.01;
 struct TooFar {
   JointId end;
   BodyPoint from;
+  double share = kBack;
 };
-constexpr TooFar kTooFar[] = {
-    {JointId::kLeftElbow, BodyPoint::kLeftShoulder}, {JointId::kRightElbow, BodyPoint::kRightShoulder},
-    {JointId::kLeftWrist, BodyPoint::kLeftElbow},    {JointId::kRightWrist, BodyPoint::kRightElbow},
-    {JointId::kLeftKnee, BodyPoint::kLeftHip},       {JointId::kRightKnee, BodyPoint::kRightHip}};
+constexpr TooFar kTooFar[] = {{JointId::kLeftElbow, BodyPoint::kLeftShoulder, kElbowBack},
+                              {JointId::kRightElbow, BodyPoint::kRightShoulder, kElbowBack},
+                              {JointId::kLeftWrist, BodyPoint::kLeftElbow},
+                              {JointId::kRightWrist, BodyPoint::kRightElbow},
+                              {JointId::kLeftKnee, BodyPoint::kLeftHip},
+                              {JointId::kRightKnee, BodyPoint::kRightHip}};
 
 Vec2 at(const SeenPoint& point) { return {point.x_px(), point.y_px()}; }
 
@@ -68,9 +71,9 @@ Points points_of(const SeenBody& body, BodyModel model, Size picture, double px_
     point.inside = place.x >= 0 && place.y >= 0 && place.x <= picture.width - 1 && place.y <= picture.height - 1;
   };
   for (const Source& source : kSources) put(source.joint, at(body.at(source.point)), body.at(source.point).visibility());
-  for (const auto& [end, from] : kTooFar) {
+  for (const auto& [end, from, share] : kTooFar) {
     const Vec2 a = at(body.at(from)), b = out[end].at_px;
-    put(end, {b.x + kBack * (a.x - b.x), b.y + kBack * (a.y - b.y)}, out[end].visibility);
+    put(end, {b.x + share * (a.x - b.x), b.y + share * (a.y - b.y)}, out[end].visibility);
   }
 
   const Vec2 shoulders = mean(at(body.at(kLeftShoulder)), at(body.at(kRightShoulder)));

@@ -40,6 +40,9 @@ struct Scene {
   /// How far a wrist or hand is behind where it would lie on the back, m. None where it is not behind the trunk, where its
   /// network sees it or did not look, or where the trunk does not face the cameras. In behind_back.cpp.
   std::optional<double> off_back_m(JointId id, Vec3 p) const;
+  /// How far a joint of an arm is outwards from where it would hang, across the trunk, m; `shoulder` is its own. None but of
+  /// the arm that the trunk hides from the side, and of the shoulder. In behind_back.cpp.
+  std::optional<double> off_hanging_m(JointId id, Vec3 p, Vec3 shoulder) const;
 };
 
 /// From the skin to the joint along the view. `away`: how far the joint's side of the trunk looks away from the camera, -1
