@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/tensor_parts.h"
+
 namespace duo {
 namespace {
 
@@ -14,8 +16,14 @@ struct Needed {
   bool with(const Needed& other) const { return first <= other.last && other.first <= last; }
 };
 
-bool works_on_single_pixels(const LayerWork& work) {
-  return std::holds_alternative<Matmul16>(work) || std::holds_alternative<Add16>(work);
+template <class... Works>
+bool is_one_of(const LayerWork& work) {
+  return (std::holds_alternative<Works>(work) || ...);
+}
+
+/// As the layers' stages spread them over threads.
+bool by_channels(const LayerWork& work, const NetTensor& y) {
+  return is_one_of<Matmul16, Depthwise16, Add16, SumPixels16>(work) && divided_by_channels(y.size, y.channels);
 }
 
 }  // namespace
@@ -23,11 +31,17 @@ bool works_on_single_pixels(const LayerWork& work) {
 std::vector<int> chains_of(const Net& net) {
   std::vector<int> chains;
   for (std::size_t i = 0; i < net.layers.size(); ++i) {
-    const Size size = net.tensors[net.layers[i].y].size;
-    // A tensor of one row is divided among threads by its channels.
-    const bool goes_on =
-        i > 0 && works_on_single_pixels(net.layers[i].work) && size.height > 1 && size == net.tensors[net.layers[i - 1].y].size;
-    chains.push_back(i == 0 ? 0 : chains.back() + (goes_on ? 0 : 1));
+    if (i == 0) {
+      chains.push_back(0);
+      continue;
+    }
+    const NetLayer &before = net.layers[i - 1], &layer = net.layers[i];
+    const NetTensor &made = net.tensors[before.y], &y = net.tensors[layer.y];
+    const bool channels = by_channels(layer.work, y);
+    const bool goes_on = channels == by_channels(before.work, made) &&
+                         (channels ? is_one_of<Depthwise16, Add16, SumPixels16>(layer.work) && y.channels == made.channels
+                                   : is_one_of<Matmul16, Add16>(layer.work) && y.size == made.size);
+    chains.push_back(chains.back() + (goes_on ? 0 : 1));
   }
   return chains;
 }

@@ -9,8 +9,8 @@
 namespace duo {
 
 /// The chain of each layer. Layers of a chain follow each other, and each makes a row from the same rows of what the chain has
-/// made before and from what other chains have made. So threads that have the same rows of each layer need not meet within a
-/// chain.
+/// made before and from what other chains have made; or a channel from the same channels, where threads have channels
+/// (core/tensor_parts.h). So threads that have the same rows or channels of each layer need not meet within a chain.
 std::vector<int> chains_of(const Net& net);
 
 /// Offsets in int16, multiples of 32. Two tensors share memory only when no chain needs both: a tensor is needed from the chain

@@ -112,9 +112,10 @@ TEST(NetFile, AMissingFileSaysSo) {
 
 /// A network of layers on tensors of these sizes; layer i reads tensor a[i], and b[i] where that is not -1, and writes tensor i
 /// + 1.
-Net chained(std::vector<Size> sizes, std::vector<LayerWork> works, const std::vector<int>& a, const std::vector<int>& b) {
+Net chained(std::vector<Size> sizes, std::vector<LayerWork> works, const std::vector<int>& a, const std::vector<int>& b,
+            int channels = 32) {
   Net net;
-  for (const Size& size : sizes) net.tensors.push_back({size, 32, 0, {}});
+  for (const Size& size : sizes) net.tensors.push_back({size, channels, 0, {}});
   for (std::size_t i = 0; i < works.size(); ++i)
     net.layers.push_back({std::move(works[i]), a[i], b[i], static_cast<int>(i) + 1});
   net.outputs.push_back({"out", static_cast<int>(works.size())});
@@ -130,6 +131,19 @@ TEST(MemoryPlan, LayersOfSinglePixelsGoOnWithTheirChain) {
   EXPECT_EQ(chains_of(net), (std::vector<int>{0, 0, 0, 1, 1, 2, 3}));
 }
 
+// Of few rows with many channels a thread makes its channels: windows and sums go on, products need those of all threads.
+TEST(MemoryPlan, LayersOfSingleChannelsGoOnWithTheirChain) {
+  const Size few{7, 7}, many{9, 8};
+  std::vector<LayerWork> works = {Matmul16{}, Depthwise16{}, Matmul16{}, Add16{}, Matmul16{}, Depthwise16{}};
+  EXPECT_EQ(chains_of(chained(std::vector(7, few), works, {0, 1, 2, 3, 4, 5}, {-1, -1, -1, 0, -1, -1}, 112)),
+            (std::vector<int>{0, 0, 1, 1, 2, 2}));
+  EXPECT_EQ(chains_of(chained(std::vector(7, many), works, {0, 1, 2, 3, 4, 5}, {-1, -1, -1, 0, -1, -1}, 112)),
+            (std::vector<int>{0, 1, 1, 1, 1, 2}));
+  // Averages of the channels go on, too; what is read of another size was made by rows.
+  works = {Depthwise16{}, SumPixels16{}, Matmul16{}};
+  EXPECT_EQ(chains_of(chained({many, few, {1, 1}, {1, 1}}, works, {0, 1, 2}, {-1, -1, -1}, 112)), (std::vector<int>{0, 0, 1}));
+}
+
 // A thread may write the product of its rows while another still reads what the windows read: so three tensors lie apart,
 // though no layer needs more than two.
 TEST(MemoryPlan, TensorsOfAChainLieApart) {
@@ -140,16 +154,17 @@ TEST(MemoryPlan, TensorsOfAChainLieApart) {
   EXPECT_EQ(windows.count, 2u * 8 * 8 * 32);
 }
 
-// No tensor's memory is another's while both are needed; by hand for the small network: input 12 and results 2 and 1 values,
-// each in blocks of 32: the input and the second result may share.
+// No tensor's memory is another's while both are needed; by hand for the small network: input 12 and results 2, 1 and 1 values,
+// each in blocks of 32: the last two layers are a chain, whose three tensors lie apart; the input may share with its results.
 TEST(MemoryPlan, TensorsThatAreNeededTogetherLieApart) {
   const auto net = parse_net(small_net().bytes(), "made.net");
   ASSERT_TRUE(net);
   const MemoryPlan plan = plan_memory(*net);
   EXPECT_NE(plan.offsets[0], plan.offsets[1]);
   EXPECT_NE(plan.offsets[1], plan.offsets[2]);
+  EXPECT_NE(plan.offsets[1], plan.offsets[3]);
   EXPECT_NE(plan.offsets[2], plan.offsets[3]);
-  EXPECT_EQ(plan.count, 64u);
+  EXPECT_EQ(plan.count, 96u);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ namespace duo {
 namespace {
 
 constexpr std::size_t kAnswerValues = 64;
+constexpr int kLine = 32;  // values in 64 bytes
 
 /// A byte of slanted waves: every network's input has the range of a byte.
 int wave(std::size_t i) { return static_cast<int>(i * 5 % 256); }
@@ -45,7 +46,11 @@ class OnProcessor final : public Network {
  public:
   OnProcessor(Net net, NetRun::Loops loops, int threads) : net_(std::move(net)), pool_(threads), run_(net_, loops) {}
   Result<void> run() override {
-    std::copy(input_.begin(), input_.end(), run_.input().data());
+    // By all threads, as a crop fills it.
+    std::int16_t* input = run_.input().data();
+    pool_.rows(
+        static_cast<int>(input_.size()),
+        [&](int begin, int end) { std::copy(input_.begin() + begin, input_.begin() + end, input + begin); }, kLine);
     run_.run(pool_);
     return {};
   }

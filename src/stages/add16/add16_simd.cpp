@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "core/check.h"
-#include "core/tensor_rows.h"
+#include "core/tensor_parts.h"
 #include "stages/add16/add16.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -40,12 +40,14 @@ void add_values(const Add16& layer, const std::int16_t* a, const std::int16_t* b
   each_vector(hn::ScalableTag<std::int16_t>(), count, vector, plain);
 }
 
-void add_pixels(const Add16& layer, ConstTensor16 a, ConstTensor16 b, Tensor16 y, int begin, int end) {
+void add_pixels(const Add16& layer, ConstTensor16 a, ConstTensor16 b, Tensor16 y, int begin, int end, int c_begin, int c_end) {
   const int channels = y.channels(), of_b = b.channels();
-  if (of_b == channels) return add_values(layer, a.pixel(begin), b.pixel(begin), y.pixel(begin), (end - begin) * channels);
+  if (of_b == channels && c_end - c_begin == channels)
+    return add_values(layer, a.pixel(begin), b.pixel(begin), y.pixel(begin), (end - begin) * channels);
+  const int c_both = std::clamp(of_b, c_begin, c_end);
   for (int p = begin; p < end; ++p) {
-    add_values(layer, a.pixel(p), b.pixel(p), y.pixel(p), of_b);
-    add_values(layer, a.pixel(p) + of_b, nullptr, y.pixel(p) + of_b, channels - of_b);
+    add_values(layer, a.pixel(p) + c_begin, b.pixel(p) + c_begin, y.pixel(p) + c_begin, c_both - c_begin);
+    add_values(layer, a.pixel(p) + c_both, nullptr, y.pixel(p) + c_both, c_end - c_both);
   }
 }
 
@@ -62,7 +64,9 @@ void add16(Pool& pool, const Add16& layer, ConstTensor16 a, ConstTensor16 b, Ten
   DUO_CHECK(a.size() == y.size() && b.size() == y.size());
   DUO_CHECK(a.channels() == y.channels() && b.channels() <= y.channels());
   const auto pixels = HWY_DYNAMIC_DISPATCH(add_pixels);
-  each_tensor_row(pool, y, [&](int begin, int end) { pixels(layer, a, b, y, begin * y.width(), end * y.width()); });
+  each_tensor_part(pool, y, [&](int begin, int end, int c_begin, int c_end) {
+    pixels(layer, a, b, y, begin * y.width(), end * y.width(), c_begin, c_end);
+  });
 }
 
 }  // namespace simd

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "core/check.h"
-#include "core/tensor_rows.h"
+#include "core/tensor_parts.h"
 #include "stages/depth_to_space16/depth_to_space16.h"
 
 namespace duo::simd {

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "core/check.h"
-#include "core/tensor_rows.h"
+#include "core/tensor_parts.h"
 #include "stages/depthwise16/depthwise16.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -161,10 +161,10 @@ void depthwise16(Pool& pool, const Depthwise16& layer, ConstTensor16 x, Tensor16
   const auto part = HWY_DYNAMIC_DISPATCH(depthwise_part);
   // Bands of so many rows of a group of channels that preparing the group's weights does not count.
   const int band = std::max(4, 128 / y.width() / 2 * 2);
-  each_tensor_row(pool, y, [&](int begin, int end) {
+  each_tensor_part(pool, y, [&](int begin, int end, int c_begin, int c_end) {
     for (int oy = begin; oy < end; oy += band)
-      for (int c = 0; c < layer.channels; c += kDepthwiseGroup)
-        part(layer, x, y, oy, std::min(oy + band, end), c, std::min(c + kDepthwiseGroup, layer.channels));
+      for (int c = c_begin; c < c_end; c += kDepthwiseGroup)
+        part(layer, x, y, oy, std::min(oy + band, end), c, std::min(c + kDepthwiseGroup, c_end));
   });
 }
 

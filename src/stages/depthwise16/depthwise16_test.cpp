@@ -77,14 +77,16 @@ TEST(Depthwise16, SimdAgrees) {
         }
 }
 
-// Large enough for the threads to share bands of rows and groups of channels.
+// Large enough for the threads to share bands of rows, or groups of channels where there are few rows.
 TEST(Depthwise16, SimdAgreesInParts) {
   std::mt19937 rng(2);
-  const test::RandomDepthwise16 random(104, 5, 1, 2, 2, rng);
-  const test::Made16 x({43, 31}, 104, rng);
-  test::agree16(
-      "depthwise16", x.view.size(), 104, [&](Tensor16 y) { ref::depthwise16(random.layer, x.view, y); },
-      [&](Pool& pool, Tensor16 y) { simd::depthwise16(pool, random.layer, x.view, y); });
+  for (const Size size : {Size{43, 31}, Size{7, 7}}) {
+    const test::RandomDepthwise16 random(120, 5, 1, 2, 2, rng);
+    const test::Made16 x(size, 120, rng);
+    test::agree16(
+        "depthwise16", size, 120, [&](Tensor16 y) { ref::depthwise16(random.layer, x.view, y); },
+        [&](Pool& pool, Tensor16 y) { simd::depthwise16(pool, random.layer, x.view, y); });
+  }
 }
 
 }  // namespace

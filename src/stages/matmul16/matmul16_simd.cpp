@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "core/check.h"
-#include "core/tensor_rows.h"
+#include "core/tensor_parts.h"
 #include "stages/matmul16/matmul16.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -126,12 +126,10 @@ void matmul16(Pool& pool, const Matmul16& layer, ConstTensor16 x, Tensor16 y) {
   DUO_CHECK(x.channels() == layer.inputs && y.channels() == layer.outputs && x.pixels() == y.pixels());
   DUO_CHECK(layer.inputs % 2 == 0 && layer.packed.size() == packed_words(layer));
   const auto part = HWY_DYNAMIC_DISPATCH(matmul_part);
-  if (y.height() == 1)
-    pool.rows(
-        layer.outputs, [&](int begin, int end) { part(layer, x, y, 0, x.pixels(), begin, end); }, 2 * kMatmulBlock);
-  else
-    each_tensor_row(pool, y,
-                    [&](int begin, int end) { part(layer, x, y, begin * y.width(), end * y.width(), 0, layer.outputs); });
+  static_assert(kChannelGroup % kMatmulBlock == 0);
+  each_tensor_part(pool, y, [&](int begin, int end, int n_begin, int n_end) {
+    part(layer, x, y, begin * y.width(), end * y.width(), n_begin, n_end);
+  });
 }
 
 }  // namespace simd

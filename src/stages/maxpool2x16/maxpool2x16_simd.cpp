@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "core/check.h"
-#include "core/tensor_rows.h"
+#include "core/tensor_parts.h"
 #include "stages/maxpool2x16/maxpool2x16.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "core/check.h"
-#include "core/tensor_rows.h"
+#include "core/tensor_parts.h"
 #include "stages/sum_pixels16/sum_pixels16.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -17,10 +17,11 @@ namespace duo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Lanes are channels; two pixels at once, as pairs whose weights are 1.
-void sum_channels(ConstTensor16 x, int shift, Tensor16 y) {
-  const int channels = y.channels(), pixels = x.pixels();
+void sum_channels(ConstTensor16 x, int shift, Tensor16 y, int c_begin, int c_end) {
+  const int pixels = x.pixels();
   const std::int32_t half = (1 << shift) / 2;
-  const auto vector = [&](auto d, int c) HWY_ATTR {
+  const auto vector = [&](auto d, int i) HWY_ATTR {
+    const int c = c_begin + i;
     const hn::Repartition<std::int32_t, decltype(d)> d32;
     const auto ones = hn::Set(d32, 1 | 1 << 16);
     Products<decltype(d32)> lower, upper;
@@ -33,12 +34,13 @@ void sum_channels(ConstTensor16 x, int shift, Tensor16 y) {
     // Undoes the interleaving.
     hn::StoreU(hn::ReorderDemote2To(d, rounded(lower.sum()), rounded(upper.sum())), d, y.data() + c);
   };
-  const auto plain = [&](int c) {
+  const auto plain = [&](int i) {
+    const int c = c_begin + i;
     std::int32_t sum = half;
     for (int p = 0; p < pixels; ++p) sum += x.pixel(p)[c];
     y.data()[c] = static_cast<std::int16_t>(sum >> shift);
   };
-  each_vector(hn::ScalableTag<std::int16_t>(), channels, vector, plain);
+  each_vector(hn::ScalableTag<std::int16_t>(), c_end - c_begin, vector, plain);
 }
 
 }  // namespace duo::HWY_NAMESPACE
@@ -50,11 +52,10 @@ HWY_EXPORT(sum_channels);
 
 namespace simd {
 
-// One thread: networks have a few thousand values here, fewer than it takes to wake another.
 void sum_pixels16(Pool& pool, ConstTensor16 x, int shift, Tensor16 y) {
   DUO_CHECK(y.pixels() == 1 && x.channels() == y.channels() && shift <= 15 && x.pixels() <= 1 << shift);
   const auto sum = HWY_DYNAMIC_DISPATCH(sum_channels);
-  each_tensor_row(pool, y, [&](int, int) { sum(x, shift, y); });
+  each_tensor_part(pool, y, [&](int, int, int c_begin, int c_end) { sum(x, shift, y, c_begin, c_end); });
 }
 
 }  // namespace simd
