@@ -41,7 +41,10 @@ TurnedSquare start_in(const Picture& picture) {
 /// All points of `count` pictures as one number.
 std::uint64_t hash_of_loop(const std::vector<Picture>& pictures, std::size_t count, const DetectorOptions& options) {
   const auto detector = make_detector(options);
-  if (!detector) return 0;
+  if (!detector) {
+    ADD_FAILURE() << detector.error().what;
+    return 0;
+  }
   TurnedSquare region = start_in(pictures[0]);
   std::string places;
   for (std::size_t i = 0; i < std::min(count, pictures.size()); ++i) {
