@@ -96,11 +96,11 @@ HWY_INLINE Before before(const Sweep& sweep, const std::uint8_t* costs, const st
 constexpr int kAnyVectors = 0;
 template <int kVectors>
 HWY_INLINE int lanes_of(const Sweep& sweep) {
-  return kVectors != kAnyVectors ? kVectors * static_cast<int>(hn::Lanes(D())) : sweep.lanes;
+  return kVectors != kAnyVectors ? (kVectors * kMostLanes + kGap - 1) / kGap * kGap : sweep.lanes;
 }
 template <int kVectors>
 HWY_INLINE int first_lane(const Sweep& sweep) {
-  return kVectors != kAnyVectors ? 0 : sweep.first;
+  return kVectors != kAnyVectors ? lanes_of<kVectors>(sweep) - kVectors * kMostLanes : sweep.first;
 }
 
 /// Calls f(lane, whether some of the vector's lanes hold no disparity) for each vector.
@@ -108,8 +108,9 @@ template <int kVectors, class F>
 HWY_INLINE void each_vector(const Sweep& sweep, const F& f) {
   const int n = static_cast<int>(hn::Lanes(D()));
   if constexpr (kVectors != kAnyVectors) {
-    f(0, std::true_type());
-    for (int v = 1; v < kVectors; ++v) f(v * n, std::false_type());
+    const int first = first_lane<kVectors>(sweep);
+    f(first, std::true_type());
+    for (int v = 1; v < kVectors; ++v) f(first + v * kMostLanes, std::false_type());
     return;
   }
   int j = sweep.first;

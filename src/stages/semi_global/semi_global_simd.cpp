@@ -99,11 +99,15 @@ void run(const Sweep& sweep) {
     sweep.sums_are_there();
     sweep.wait_for_sums();
   }
-  // The default's 97 to 128 disparities, without loops.
-  constexpr int kUsual = 128, kUsualVectors = kUsual / static_cast<int>(hn::MaxLanes(D()));
-  const bool is_usual = sweep.lanes == kUsual && hn::Lanes(D()) == hn::MaxLanes(D());  // vectors of SVE can be shorter
-  if (!kDiagonals && is_usual && sweep.first == 0 && !sweep.in.params.upward)
-    walk_and_pick<kDiagonals, kStep, kDiagonals ? kAnyVectors : kUsualVectors>(sweep, i);
+  // The default's 128 disparities, and with vectors of 32 bytes 97 to 160, of 64 bytes 65 to 192, without loops.
+  constexpr int kUsual = std::max(1, 128 / kMostLanes), kMore = kUsual + 1;
+  const int vectors = hn::Lanes(D()) == kMostLanes && !sweep.in.params.upward  // vectors of SVE can be shorter
+                          ? (sweep.lanes - sweep.first) / kMostLanes
+                          : kAnyVectors;
+  if (!kDiagonals && vectors == kUsual)
+    walk_and_pick<kDiagonals, kStep, kDiagonals ? kAnyVectors : kUsual>(sweep, i);
+  else if (!kDiagonals && vectors == kMore && kMostLanes > 16)
+    walk_and_pick<kDiagonals, kStep, kDiagonals || kMostLanes <= 16 ? kAnyVectors : kMore>(sweep, i);
   else
     walk_and_pick<kDiagonals, kStep, kAnyVectors>(sweep, i);
 }
