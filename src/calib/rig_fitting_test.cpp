@@ -147,6 +147,22 @@ Image<Rgb8> with_thing(const Image<Rgb8>& picture, int at_x, int at_y) {
   return out;
 }
 
+/// Of two like things in the right photo the lower one looks exactly as the left photo's does, the other, on its row, nearly.
+TEST(RigFitting, WhatStandsThereTwiceHasNotMoved) {
+  const SyntheticPair ideal = render_synthetic({.seed = 3, .ideal = true}, 2);
+  Image<Rgb8> twice = with_thing(with_thing(ideal.pair.right.pixels, 280, 330), 280, 180);
+  std::mt19937 random(4);
+  for (int y = 180; y < 300; ++y)
+    for (int x = 280; x < 400; ++x) {
+      const int level = std::clamp(twice.at(y, x).r + static_cast<int>(random() % 81) - 40, 0, 255);
+      twice.at(y, x) = {static_cast<std::uint8_t>(level), static_cast<std::uint8_t>(level), static_cast<std::uint8_t>(level)};
+    }
+  const PairPointer pair = pair_of(with_thing(ideal.pair.left.pixels, 300, 180), twice);
+  RigFitting fitting(ideal.rig, twice.size(), 1, SceneSearch::kThorough, true);
+  const auto fit = fitting.by_first(pair);
+  EXPECT_EQ(fit ? fit->what : fitting.by_all({}, PairSum(twice.size())).what, "");
+}
+
 /// A picture on the wall hangs `down` pixels lower in the right photo.
 TEST(RigFitting, WhatMovedBetweenTwoPhotosIsTold) {
   const SyntheticPair ideal = render_synthetic({.seed = 3, .ideal = true}, 2);
