@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/judge_scene.h"
 #include "calib/normal_equations.h"
 #include "calib/scene_pose.h"
 #include "core/pool.h"
@@ -38,36 +37,13 @@ std::vector<SceneMatch> others_of(const SceneMatches& scene, const std::vector<S
   return out;
 }
 
-/// What no lens that both cameras may have leaves of them; where none fits, all.
-void take_lens_off(const SceneMatches& scene, const std::vector<SceneMatch>& agreeing, const std::vector<SceneMatch>& matches,
-                   std::vector<double>& off_px) {
-  constexpr double kNear_px = 3;
-  Rig rig = guessed_rig(scene.size);
-  std::vector<SceneMatch> explained = agreeing;
-  for (int round = 0; round < 3; ++round) {  // the middle of the picture first, and what that explains of the rest
-    const auto pose = fit_scene_pose(rig, kFreePoseAndLens, explained, scene.pairs);
-    if (!pose) return;
-    rig = pose->rig;
-    const std::vector<double> all_px = row_errors_px(rig, scene.matches);
-    std::vector<SceneMatch> more;
-    for (std::size_t i = 0; i < all_px.size(); ++i)
-      if (std::abs(all_px[i]) < kNear_px) more.push_back(scene.matches[i]);
-    if (more.size() < explained.size()) break;
-    explained = std::move(more);
-  }
-  const std::vector<double> by_lens_px = row_errors_px(rig, matches);
-  for (std::size_t i = 0; i < off_px.size(); ++i)
-    if (std::abs(by_lens_px[i]) < std::abs(off_px[i])) off_px[i] = by_lens_px[i];  // not where it sees none: NaN
-}
-
-std::vector<double> off_rows_px(const std::optional<Rig>& rig, const SceneMatches& scene,
-                                const std::vector<SceneMatch>& agreeing, const std::vector<SceneMatch>& matches) {
+std::vector<double> off_rows_px(const std::optional<Rig>& rig, const std::vector<SceneMatch>& agreeing,
+                                const std::vector<SceneMatch>& matches) {
   if (rig) return row_errors_px(*rig, matches);
   const auto down_px = [](const SceneMatch& m) { return m.right_px.y - m.left_px.y; };
   const MatchPlane plane = plane_of(agreeing, down_px);
   std::vector<double> out;
   for (const SceneMatch& m : matches) out.push_back(down_px(m) - plane.at(m.left_px));
-  take_lens_off(scene, agreeing, matches, out);
   return out;
 }
 
@@ -136,7 +112,7 @@ std::string why_moved(const std::optional<Rig>& rig, const SceneMatches& scene, 
   constexpr double kShare = 0.03;  // of all points
   const double width = scene.size.width, least_px = std::max(kLeast_px, kLeastOfWidth * width);
   const std::vector<SceneMatch> others = others_of(scene, agreeing);
-  const std::vector<double> off_px = off_rows_px(rig, scene, agreeing, others);
+  const std::vector<double> off_px = off_rows_px(rig, agreeing, others);
   std::vector<OffRow> off;
   for (std::size_t i = 0; i < others.size(); ++i)
     if (std::abs(off_px[i]) >= least_px) off.push_back({others[i], off_px[i]});

@@ -19,9 +19,8 @@ struct MatchPlane {
 MatchPlane plane_of(const std::vector<SceneMatch>& matches, double (*value)(const SceneMatch&));
 
 /// Neighbouring points that look alike in both photos and lie off their rows by the same: a thing that was elsewhere when the
-/// second was taken. What moved along its row cannot be told from what is nearer or farther. Without a rig, rows that a lens
-/// bends are as they should be; and what looks as much alike on its own row did not move, but stands there more than once, as
-/// windows do.
+/// second was taken. What moved along its row cannot be told from what is nearer or farther. What looks nearly as much alike on
+/// its own row did not move, but stands there more than once, as windows do.
 ///
 /// `agreeing`  of the scene's matches those that one pose of the cameras explains
 /// Returns     one line; empty: nothing is known to have moved
