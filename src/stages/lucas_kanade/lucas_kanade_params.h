@@ -13,7 +13,7 @@ const int kLucasKanadeReach = 6;           // taps of the window to each side
 const int kLucasKanadeMostDifference = 8;  // gray levels
 const int kLucasKanadeMost_q4 = 6;         // 1/16 px
 
-// g w in 1/2^14, of g >= 0 in 1/4: at most 181, so that with e of 1/16 a tap fits 16 bits.
+// g w in 1/2^14, of g >= 0 in 1/4: at most 181, so that with e of 1/16 a pull fits 16 bits.
 DUO_INLINE int lucas_kanade_pull(int g_q2) {
   const int most = g_q2 * g_q2 + 128;
   return (4096 * g_q2 + most / 2) / most;

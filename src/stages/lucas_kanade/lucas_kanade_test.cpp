@@ -82,7 +82,7 @@ TEST(LucasKanade, ShadingTellsThePlace) {
 
 TEST(LucasKanade, WhatSeesSomethingElseDoesNotCount) {
   ZigzagPair pair(2.25, 32);
-  pair.left.at(0, 12) = 200;  // beyond the window of column 8 but for the gradient of column 11
+  pair.left.at(0, 12) = 200;  // a tap that differs by too much
   const LucasKanade in{pair.left, pair.right, pair.d_q4, 16};
   EXPECT_EQ(ref::lucas_kanade_tap(in, 0, 12).weight, 0);
   pair.d_q4.at(0, 10) = kNoDisparity;

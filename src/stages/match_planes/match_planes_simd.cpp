@@ -36,7 +36,7 @@ void census_row(const std::uint8_t* const* rows, int w, int dead_zone, std::uint
 }
 
 void plane_sobel_row(const std::uint8_t* up, const std::uint8_t* mid, const std::uint8_t* down, int w, bool whole,
-               std::uint8_t* out_x, std::uint8_t* out_y) {
+                     std::uint8_t* out_x, std::uint8_t* out_y) {
   const hn::CappedTag<std::int16_t, PlaneImages::kPadRight / 2> d16;
   const hn::Rebind<std::uint8_t, decltype(d16)> d8;
   const auto load = [&](const std::uint8_t* p) HWY_ATTR { return hn::PromoteTo(d16, hn::LoadU(d8, p)); };
@@ -55,7 +55,7 @@ void plane_sobel_row(const std::uint8_t* up, const std::uint8_t* mid, const std:
 }
 
 void plane_interval_row(const std::uint8_t* up, const std::uint8_t* mid, const std::uint8_t* down, int w, int wider,
-                  std::uint8_t* low, std::uint8_t* high) {
+                        std::uint8_t* low, std::uint8_t* high) {
   const hn::CappedTag<std::uint8_t, PlaneImages::kPadRight> d;
   const auto more = hn::Set(d, static_cast<std::uint8_t>(wider));
   for (int x = 0; x < w; x += static_cast<int>(hn::Lanes(d))) {

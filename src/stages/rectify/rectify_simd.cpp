@@ -65,8 +65,8 @@ struct Place {
   }
 
   /// From the pairs of four rows.
-  hn::Vec<hn::Rebind<std::uint8_t, PlaceTag>> value(const Weights& weights, PlaceVec before_pair, PlaceVec here_pair, PlaceVec after_pair,
-                                             PlaceVec last_pair) const {
+  hn::Vec<hn::Rebind<std::uint8_t, PlaceTag>> value(const Weights& weights, PlaceVec before_pair, PlaceVec here_pair,
+                                                    PlaceVec after_pair, PlaceVec last_pair) const {
     const hn::RebindToSigned<PlaceTag> d;
     const auto row = [&](PlaceVec pair, Signed weight) HWY_ATTR { return hn::Mul(hn::BitCast(d, across(pair)), weight); };
     const auto sum = hn::Add(hn::Add(row(before_pair, weights.before), row(here_pair, weights.here)),

@@ -131,6 +131,12 @@ class SemiGlobalScratch {
   Image<std::uint8_t> volume;                // sums of the paths of a sweep, for the sweep from the other side
   std::unique_ptr<std::atomic<int>[]> done;  // [team][row]: pixels finished
   std::unique_ptr<std::atomic<int>[]> sums;  // [team]: threads whose sums are in the volume
+  /// Whether vectors of 32 bytes are swept where the processor has those of 64. AMD's Zen 4 takes vectors of 64 bytes in two
+  /// turns, and longer than twice 32; Zen 5 gains nothing by them. Not where a test allows one set of instructions alone.
+  bool half_vectors = prefers_half_vectors();
+
+ private:
+  static bool prefers_half_vectors();
 };
 void semi_global(Pool& pool, const SemiGlobal& in, SemiGlobalScratch& scratch, const SemiGlobalMatch& out);
 }  // namespace simd

@@ -134,12 +134,11 @@ HWY_EXPORT(sweep);
 namespace simd {
 namespace {
 
-/// With the best instructions for this processor. AMD's Zen 4 takes vectors of 64 bytes in two turns, and beside other work
-/// longer than twice 32; Zen 5 gains nothing by them: there, AVX2. Not where a test allows one set of instructions alone.
-auto best_sweep() -> void (*)(const SemiGlobal&, SemiGlobalScratch&, const SemiGlobalMatch&, const SemiGlobalPart&) {
+/// With the best instructions for this processor.
+auto best_sweep(const SemiGlobalScratch& scratch)
+    -> void (*)(const SemiGlobal&, SemiGlobalScratch&, const SemiGlobalMatch&, const SemiGlobalPart&) {
 #if HWY_ARCH_X86 && (HWY_TARGETS & HWY_AVX2)
-  static const bool is_amd = __builtin_cpu_is("amd") != 0;
-  if (is_amd && (hwy::SupportedTargets() & HWY_AVX2) != 0) return &N_AVX2::sweep;
+  if (scratch.half_vectors) return &N_AVX2::sweep;
 #endif
   return HWY_DYNAMIC_DISPATCH(sweep);
 }
@@ -206,6 +205,17 @@ SemiGlobalPart row_in_turn(SemiGlobalScratch& scratch, int thread, int threads, 
 
 }  // namespace
 
+bool SemiGlobalScratch::prefers_half_vectors() {
+#if HWY_ARCH_X86 && (HWY_TARGETS & HWY_AVX2)
+  if (__builtin_cpu_is("amd") == 0) return false;
+  const std::int64_t targets = hwy::SupportedTargets();
+  hwy::GetChosenTarget().Update(targets);  // the question lets all instructions in again, also those that somebody disabled
+  return (targets & HWY_AVX2) != 0;
+#else
+  return false;
+#endif
+}
+
 void semi_global(Pool& pool, const SemiGlobal& in, SemiGlobalScratch& scratch, const SemiGlobalMatch& out) {
   const Size size = in.left.size();
   DUO_CHECK(in.max_disparity >= 1 && in.max_disparity <= 256);
@@ -216,7 +226,7 @@ void semi_global(Pool& pool, const SemiGlobal& in, SemiGlobalScratch& scratch, c
   const auto run = [&](const auto& part_of) {
     for (int i = 0; i < 2 * size.height; ++i) scratch.done[static_cast<std::size_t>(i)].store(0, std::memory_order_relaxed);
     for (std::size_t team : {0, 1}) scratch.sums[team].store(0, std::memory_order_relaxed);
-    const auto here = best_sweep();
+    const auto here = best_sweep(scratch);
     pool.rows(pool.threads(), [&](int thread, int, int) {
       if (thread < threads) here(in, scratch, out, part_of(thread));
     });

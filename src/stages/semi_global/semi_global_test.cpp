@@ -104,6 +104,8 @@ TEST(SemiGlobal, SimdAgrees) {
         expect_agree({2, 9}, 5, params, masked, test::Fill::kRandom);
         expect_agree({1, 1}, 1, params, masked, test::Fill::kRandom);
         expect_agree({7, 9}, 3, params, masked, test::Fill::kCheckerboard);
+        expect_agree({140, 3}, 128, params, masked, test::Fill::kRandom);  // what is usual
+        expect_agree({130, 3}, 104, params, masked, test::Fill::kHigh);
         expect_agree({131, 4}, 129, params, masked, test::Fill::kHigh);
         expect_agree({170, 3}, 153, params, masked, test::Fill::kRandom);  // not all lanes of the first vector in use
         expect_agree({90, 3}, 96, params, masked, test::Fill::kHigh);

@@ -74,7 +74,8 @@ class Row {
       const ColorVec here = hn::LoadU(d, sums + kBeside + near), beside = hn::LoadU(d, sums + kBeside + far);
       return hn::Add(hn::Add(here, hn::Add(here, here)), beside);
     };
-    const auto clipped = [&](ColorVec added) HWY_ATTR { return hn::Min(hn::Max(hn::Add(luma, added), hn::Zero(d)), hn::Set(d, 255)); };
+    const auto clipped = [&](ColorVec added)
+                             HWY_ATTR { return hn::Min(hn::Max(hn::Add(luma, added), hn::Zero(d)), hn::Set(d, 255)); };
     const ColorVec u = chroma(u_), v = chroma(v_);
     return {clipped(rounded_product(v, hn::Set(d, weights_.red_of_v))),
             clipped(rounded_products(u, hn::Set(d, weights_.green_of_u), v, hn::Set(d, weights_.green_of_v))),
