@@ -22,7 +22,8 @@ struct RigFit {
 /// Judges by the numbers of the rig, where they are of no use, and by the pairs as scene_health() does. Without a rig, and
 /// where the two views do not agree, it looks for what is known to go wrong: left and right swapped, both mirrored, one picture
 /// twice, one camera on its head, on its side or mirrored, pictures that have nothing in common. What the pairs do not tell for
-/// sure is good. Where all is right beyond doubt the first pair is enough, some 30 ms at 640x480; else all are looked at.
+/// sure is good. Where all is right beyond doubt the first pair is enough, some 30 ms at 640x480; else all are looked at, and
+/// where these leave a doubt about a metric rig, the mean of all, if there are four or more: the cameras must have stood still.
 RigFit rig_fit(const std::optional<Rig>& rig, std::span<const std::shared_ptr<const Pair>> pairs, int threads);
 
 }  // namespace duo

@@ -37,7 +37,7 @@ double systematic_row_px(const Evidence& evidence, const std::vector<double>& er
     const double middle = quantile(std::vector(part), 0.5);
     std::vector<double> off;
     for (const double error : part) off.push_back(std::abs(error - middle));
-    const double sigma_px = 1.4826 * quantile(off, 0.5), points = static_cast<double>(part.size()) / evidence.pairs;
+    const double sigma_px = 1.4826 * quantile(off, 0.5), points = static_cast<double>(part.size()) / evidence.as_one;
     squares.push_back(middle * middle - kMedianVariance * sigma_px * sigma_px / std::max(1.0, points));
   }
   if (squares.empty()) return 0;
@@ -156,7 +156,9 @@ Result<void> check_size(const Rig& lenses, Size size) {
 }
 
 Result<Evidence> evidence_of(const SceneMatches& scene, std::vector<SceneMatch> matches) {
-  Evidence evidence{scene.size, scene.pairs, scene.cut, std::move(matches)};
+  const bool of_patches = scene.share_pixels > 0;
+  Evidence evidence{scene.size, scene.pairs, scene.cut, std::move(matches), of_patches ? scene.share_pixels : scene.pairs,
+                    of_patches};
   if (one_picture(evidence.matches)) return scene_error("left and right are the same picture; give one of each camera");
   const double covered = covered_share(evidence.matches, scene.size);
   const std::string missing = missing_parts(evidence.matches, scene.size);
@@ -176,7 +178,7 @@ void take_pose(const Rig& rig, const ScenePose& pose, const Evidence& evidence, 
 }
 
 Result<SceneHealth> judge_scene(const Rig& rig, const Evidence& evidence, bool pose_known) {
-  DUO_TRY_ASSIGN(const ScenePose free, fit_scene_pose(rig, kFreePose, evidence.matches, evidence.pairs, evidence.of_patches));
+  DUO_TRY_ASSIGN(const ScenePose free, fit_scene_pose(rig, kFreePose, evidence.matches, evidence.as_one, evidence.of_patches));
   if (behind(rig, free, evidence.matches))
     if (std::string why = why_behind(rig, evidence, pose_known); !why.empty())
       return Error{ErrorCode::kBadInput, std::move(why)};

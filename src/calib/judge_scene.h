@@ -17,7 +17,8 @@ struct Evidence {
   int pairs = 0;
   bool cut = false;
   std::vector<SceneMatch> matches;
-  bool of_patches = false;  // that share pixels with their neighbours
+  int as_one = 1;           // so many matches count as one: of one point in all pairs, or of patches that share pixels
+  bool of_patches = false;  // such patches
 };
 
 /// Two webcams side by side, of which nothing is known; not metric.

@@ -215,7 +215,7 @@ std::optional<ScenePose> one_camera_pan(const Rig& rig, const Evidence& evidence
   std::optional<ScenePose> best;
   if (std::abs(health.turned_rad.y) < kLeast_rad) return best;
   for (const SceneFreedom& freedom : {kLeftTurned, kRightTurned}) {
-    const auto pose = fit_scene_pose(rig, freedom, evidence.matches, evidence.pairs, evidence.of_patches);
+    const auto pose = fit_scene_pose(rig, freedom, evidence.matches, evidence.as_one, evidence.of_patches);
     if (!pose) return {};
     const double pan_rad = std::copysign(1, health.turned_rad.y) * pose->turned_rad.y;
     if (pan_rad < std::max(kLeast_rad, kSure_sigmas * pose->turn_sigma_rad.y)) return {};
@@ -331,32 +331,32 @@ std::optional<RigFit> RigFitting::by_first(const std::shared_ptr<const Pair>& pa
     if (auto fit = by_matches(match_pair(*pair, threads_, SceneSearch::kQuick), *pair); sure(fit, SceneSearch::kQuick))
       return fit;
   add(pair);
-  auto fit = by_matches(matcher_->matches(), *pair);
-  judged_ = fit && fit->scene;
-  return sure(fit, most_) ? fit : std::nullopt;
+  first_ = by_matches(matcher_->matches(), *pair);
+  return sure(first_, most_) ? first_ : std::nullopt;
 }
+
+bool RigFitting::looks_at_sum() const { return rig_ && rig_->metric && most_ != SceneSearch::kQuick; }
 
 /// None: it knows no better than three pairs do, or leaves a doubt.
 std::optional<RigFit> RigFitting::by_sum(const PairSum& sum) const {
   constexpr int kFewestPairs = 4;
-  if (!rig_ || !rig_->metric || most_ == SceneSearch::kQuick || sum.pairs() < kFewestPairs) return {};
+  if (!looks_at_sum() || sum.pairs() < kFewestPairs) return {};
   const SceneMatches scene = match_patches(*rig_, sum);
   const auto matches = agreeing_matches(lenses_, scene);
   if (!matches) return {};
-  auto evidence = evidence_of(scene, *matches);
+  const auto evidence = evidence_of(scene, *matches);
   if (!evidence) return {};
-  evidence->of_patches = true;
   // Medians of a dozen places that are known to tenths are off by a quarter of a pixel by chance.
   RigFit fit = judged(*rig_, *evidence, kUselessRow_px);
   constexpr double kSure_rad = kLeastPan_rad / 3.5;  // noisier patches know less than their own errors say
-  const bool told = !fit.what.empty() && fit.scene &&
-                    (fit.scene->turned_sigma_rad.y <= kSure_rad || fit.scene->row_px >= kUselessRow_px);
+  const bool told =
+      !fit.what.empty() && fit.scene && (fit.scene->turned_sigma_rad.y <= kSure_rad || fit.scene->row_px >= kUselessRow_px);
   return told ? std::optional(std::move(fit)) : std::nullopt;
 }
 
-RigFit RigFitting::by_all(std::span<const std::shared_ptr<const Pair>> others, const PairSum& sum) {
+RigFit RigFitting::by_all(std::span<const std::shared_ptr<const Pair>> others, const PairSum* sum) {
   // A quick search that found enough in the first finds the same in the others.
-  const bool same = most_ == SceneSearch::kQuick && judged_;
+  const bool same = most_ == SceneSearch::kQuick && first_ && first_->scene;
   for (const auto& pair : others)
     if (same)
       matcher_->add_same(*pair);
@@ -364,9 +364,9 @@ RigFit RigFitting::by_all(std::span<const std::shared_ptr<const Pair>> others, c
       add(pair);
   if (!matcher_ || !last_) return untold(rig_);
   const SceneMatches scene = matcher_->matches();
-  const auto fit = by_matches(scene, *last_);
+  const auto fit = others.empty() ? first_ : by_matches(scene, *last_);
   if (fit && (!fit->what.empty() || surely_good(rig_, *fit))) return *fit;
-  if (auto more = by_sum(sum)) return *more;
+  if (auto more = sum != nullptr ? by_sum(*sum) : std::nullopt) return *more;
   if (fit) return *fit;
   // Why they do not agree is told by more points than a quick search finds, whose many tell that they are of one scene.
   constexpr std::size_t kMany = 6;
@@ -379,9 +379,12 @@ RigFit rig_fit(const std::optional<Rig>& rig, std::span<const std::shared_ptr<co
   if (pairs.empty()) return {};
   RigFitting fitting(rig, pairs[0]->left.pixels.size(), threads);
   if (const auto fit = fitting.by_first(pairs[0])) return *fit;
-  PairSum sum(pairs[0]->left.pixels.size());
-  for (const auto& pair : pairs) sum.add(*pair);
-  return fitting.by_all(pairs.subspan(1), sum);
+  std::optional<PairSum> sum;
+  if (fitting.looks_at_sum()) {
+    sum.emplace(pairs[0]->left.pixels.size());
+    for (const auto& pair : pairs) sum->add(*pair);
+  }
+  return fitting.by_all(pairs.subspan(1), sum ? &*sum : nullptr);
 }
 
 }  // namespace duo

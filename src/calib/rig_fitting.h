@@ -22,8 +22,10 @@ class RigFitting {
   /// What the first pair tells beyond doubt, right or wrong; none where others have to be looked at, too. To be called once.
   std::optional<RigFit> by_first(const std::shared_ptr<const Pair>& pair);
   /// What the first and these tell, after by_first() told nothing; where they leave a doubt, what the sum of all pairs so far
-  /// tells.
-  RigFit by_all(std::span<const std::shared_ptr<const Pair>> others, const PairSum& sum);
+  /// tells; null: there is none.
+  RigFit by_all(std::span<const std::shared_ptr<const Pair>> others, const PairSum* sum);
+  /// Whether by_all() may look at a sum.
+  bool looks_at_sum() const;
 
  private:
   std::optional<RigFit> by_matches(const SceneMatches& scene, const Pair& last) const;
@@ -37,7 +39,7 @@ class RigFitting {
   const int threads_;
   const SceneSearch most_;
   const bool still_;
-  bool judged_ = false;                  // by the first pair, though not beyond doubt
+  std::optional<RigFit> first_;          // by all points of the first pair, though not beyond doubt
   std::optional<SceneMatcher> matcher_;  // of all pairs that were added
   std::shared_ptr<const Pair> last_;
 };

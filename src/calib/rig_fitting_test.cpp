@@ -46,7 +46,7 @@ Image<Rgb8> dimmed(const Image<Rgb8>& picture, double noise, std::mt19937& rando
 RigFit by_few_points(const std::optional<Rig>& rig, const std::vector<PairPointer>& pairs) {
   RigFitting fitting(rig, pairs[0]->left.pixels.size(), 1, SceneSearch::kQuick);
   const auto fit = fitting.by_first(pairs[0]);
-  return fit ? *fit : fitting.by_all(std::span(pairs).subspan(1), PairSum(pairs[0]->left.pixels.size()));
+  return fit ? *fit : fitting.by_all(std::span(pairs).subspan(1), nullptr);
 }
 
 TEST(RigFitting, FewPointsTellWhatAllTell) {
@@ -70,6 +70,20 @@ TEST(RigFitting, FewPointsTellWhatAllTell) {
   }
   const RigFit swapped = by_few_points(room.rig, {pair_of(right, left)});
   EXPECT_NE(swapped.what.find("left and right are swapped"), std::string::npos) << swapped.what;
+}
+
+/// What by_all() cannot use nobody need sum.
+TEST(RigFitting, SumsAreForMetricRigsThatAreSearchedThoroughly) {
+  const Rig rig = synthetic_rig({.seed = 3});
+  const auto looks = [](const std::optional<Rig>& at, SceneSearch most) {
+    return RigFitting(at, {640, 480}, 1, most).looks_at_sum();
+  };
+  EXPECT_TRUE(looks(rig, SceneSearch::kThorough));
+  EXPECT_FALSE(looks(rig, SceneSearch::kQuick));
+  EXPECT_FALSE(looks(std::nullopt, SceneSearch::kThorough));
+  Rig guessed = rig;
+  guessed.metric = false;
+  EXPECT_FALSE(looks(guessed, SceneSearch::kThorough));
 }
 
 /// Of the same pair again the same matches come again, at the same places: of one whose right picture lies a row lower, a row
@@ -160,7 +174,7 @@ TEST(RigFitting, WhatStandsThereTwiceHasNotMoved) {
   const PairPointer pair = pair_of(with_thing(ideal.pair.left.pixels, 300, 180), twice);
   RigFitting fitting(ideal.rig, twice.size(), 1, SceneSearch::kThorough, true);
   const auto fit = fitting.by_first(pair);
-  EXPECT_EQ(fit ? fit->what : fitting.by_all({}, PairSum(twice.size())).what, "");
+  EXPECT_EQ(fit ? fit->what : fitting.by_all({}, nullptr).what, "");
 }
 
 /// A picture on the wall hangs `down` pixels lower in the right photo.
@@ -172,7 +186,7 @@ TEST(RigFitting, WhatMovedBetweenTwoPhotosIsTold) {
     RigFitting fitting(with_rig ? std::optional(ideal.rig) : std::nullopt, pair->left.pixels.size(), 1, SceneSearch::kThorough,
                        still);
     const auto fit = fitting.by_first(pair);
-    return fit ? *fit : fitting.by_all({}, PairSum(pair->left.pixels.size()));
+    return fit ? *fit : fitting.by_all({}, nullptr);
   };
   for (const bool with_rig : {true, false}) {
     SCOPED_TRACE(with_rig);

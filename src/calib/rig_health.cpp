@@ -18,7 +18,7 @@ Result<Evidence> evidence(const Rig& lenses, PairSource& pairs, int threads) {
 
 /// The pose that the scene gives, in a rig that forgets what its calibration said of the old one.
 Result<SceneRig> with_pose(const Rig& start, const SceneHealth& before, const SceneFreedom& freedom, const Evidence& seen) {
-  DUO_TRY_ASSIGN(const ScenePose pose, fit_scene_pose(start, freedom, seen.matches, seen.pairs));
+  DUO_TRY_ASSIGN(const ScenePose pose, fit_scene_pose(start, freedom, seen.matches, seen.as_one));
   SceneRig out{pose.rig, before, {}};
   out.rig.reprojection_rms_px = 0;
   out.rig.errors = {};

@@ -22,6 +22,7 @@ struct SceneMatches {
   bool cut = false;  // the stream was cut short; its whole pairs were used
   std::vector<SceneMatch> matches;
   int fewest_points = 0;  // that a picture has, matched or not
+  int share_pixels = 0;   // of patches: so many have each pixel, and count as one; 0: points
 };
 
 /// How much time a pair may take.

@@ -16,7 +16,7 @@ namespace {
 constexpr int kSumColumns = 480;
 constexpr int kPatchRadius_px = 10;  // of a patch
 constexpr int kPatchStep_px = 12;    // from one to the next
-constexpr int kPatchesAsOne = 3;     // patches have each of their pixels: they count as one
+constexpr int kPatchesAsOne = 3;     // that share each of their pixels
 constexpr int kPatchRows_px = 3;     // above and below the row that the rig says
 constexpr double kFineTexture_px = 1,
                  kCoarseTexture_px = 6;  // what is smaller is noise, what is larger is light: neither is looked at
@@ -118,7 +118,8 @@ SceneMatches match_patches(const Rig& rig, const PairSum& sum) {
   const int first = -static_cast<int>(kBeyondOfWidth * left.width()), last = static_cast<int>(kNearestOfWidth * left.width());
   SceneMatches scene;
   scene.size = sum.size_;
-  scene.pairs = kPatchesAsOne;
+  scene.pairs = sum.pairs_;
+  scene.share_pixels = kPatchesAsOne;
   std::vector<Alike> found;
   for (int y = kPatchRadius_px; holds_patch(left.size(), kPatchRadius_px, y); y += kPatchStep_px)
     for (int x = kPatchRadius_px; holds_patch(left.size(), x, y); x += kPatchStep_px) {

@@ -325,10 +325,10 @@ Result<std::vector<SceneMatch>> agreeing_matches(const Rig& lenses, const SceneM
 }
 
 Result<ScenePose> fit_scene_pose(const Rig& start, const SceneFreedom& freedom, const std::vector<SceneMatch>& matches,
-                                 int pairs, bool neighbours_alike) {
+                                 int as_one, bool neighbours_alike) {
   constexpr int kIndependent = 50;
   const bool lens_free = freedom[kFocal] > 0;
-  const int repeats = lens_free ? std::max(pairs, static_cast<int>(matches.size()) / kIndependent) : pairs;
+  const int repeats = lens_free ? std::max(as_one, static_cast<int>(matches.size()) / kIndependent) : as_one;
   ScenePlace near{};
   if (lens_free) {  // a lens that is free from the start runs away before the pose is near
     SceneFreedom lens_held = freedom;

@@ -45,9 +45,9 @@ struct ScenePose {
 Result<std::vector<SceneMatch>> agreeing_matches(const Rig& lenses, const SceneMatches& scene);
 
 /// The rig nearest to `start` that fits the matches: Gauss-Newton on Sampson's distance with Tukey's weights. The baseline
-/// keeps its length. All `pairs` may show one still scene with the same points: they count once against the freedom. The
-/// uncertainty is that of the matches' noise, and of what a calibration leaves of the lenses. Where lenses are free, what is
-/// not known of their shape makes errors alike in whole parts of the picture: then all matches weigh as fifty.
+/// keeps its length. So many matches count as one against the freedom: all pairs may show one still scene with the same points.
+/// The uncertainty is that of the matches' noise, and of what a calibration leaves of the lenses. Where lenses are free, what
+/// is not known of their shape makes errors alike in whole parts of the picture: then all matches weigh as fifty.
 ///
 /// `neighbours_alike`: there are no repeated pairs, but neighbours share pixels, so many of them count as one, against noise
 /// too.
@@ -55,7 +55,7 @@ Result<std::vector<SceneMatch>> agreeing_matches(const Rig& lenses, const SceneM
 /// Errors  the numbers run away
 /// Source  Hartley, Zisserman, "Multiple View Geometry", 2004, section 11.4.3 (distance); Tukey's biweight at 95 % efficiency
 Result<ScenePose> fit_scene_pose(const Rig& start, const SceneFreedom& freedom, const std::vector<SceneMatch>& matches,
-                                 int pairs, bool neighbours_alike = false);
+                                 int as_one, bool neighbours_alike = false);
 
 /// Sampson's distance of each match, times sqrt 2: the difference of rows in a rectified pair. NaN where a lens sees no ray.
 ///

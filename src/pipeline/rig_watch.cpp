@@ -9,6 +9,7 @@
 namespace duo {
 namespace {
 
+constexpr char kWhat[] = "see whether the rig fits";
 constexpr int kWatchedPairs = 3;
 constexpr TimeNs kBetween_ns = 200'000'000, kSummed_ns = 600'000'000, kFirstCounts_ns = 100'000'000, kAllCount_ns = 800'000'000,
                  kAgain_ns = 60'000'000'000;
@@ -16,9 +17,10 @@ constexpr TimeNs kBetween_ns = 200'000'000, kSummed_ns = 600'000'000, kFirstCoun
 RigJudge judge_of_rig(const std::optional<Rig>& rig, Size size, SceneSearch most, bool still) {
   auto fitting = std::make_shared<RigFitting>(rig, size, 1, most, still);
   return {[fitting](const std::shared_ptr<const Pair>& first) { return fitting->by_first(first); },
-          [fitting](std::span<const std::shared_ptr<const Pair>> others, const PairSum& sum) {
+          [fitting](std::span<const std::shared_ptr<const Pair>> others, const PairSum* sum) {
             return fitting->by_all(others, sum);
-          }};
+          },
+          fitting->looks_at_sum() ? std::make_shared<PairSum>(size) : nullptr};
 }
 
 }  // namespace
@@ -30,16 +32,10 @@ RigWatch::RigWatch(std::optional<Rig> rig, bool live, bool still, bool quick)
 
 const RigFit* RigWatch::see(const std::shared_ptr<const Pair>& pair, bool last) {
   if (!on_) return nullptr;
-  if (!std::exchange(begun_, true)) {
-    start_ns_ = pair->left.t_ns;
-    looked_at_ = 1;
-    judge_ = judge_of_(pair->left.pixels.size());
-    sum_ = std::make_shared<PairSum>(pair->left.pixels.size());
-    start(Step::kFirst, [judge = judge_.by_first, pair] { return judge(pair); });
-  }
+  if (!std::exchange(begun_, true)) begin(pair);
   const TimeNs since_ns = pair->left.t_ns - start_ns_;
   const bool gathers = step_ == Step::kFirst || step_ == Step::kGather;
-  if (gathers && since_ns < kSummed_ns) sum_->add(*pair);
+  if (gathers && since_ns < kSummed_ns) add_to_sum(*pair);
   if (gathers && looked_at_ < kWatchedPairs && since_ns >= looked_at_ * kBetween_ns) {
     others_.push_back(pair);
     ++looked_at_;
@@ -49,6 +45,26 @@ const RigFit* RigWatch::see(const std::shared_ptr<const Pair>& pair, bool last) 
   return news;
 }
 
+void RigWatch::begin(const std::shared_ptr<const Pair>& pair) {
+  start_ns_ = pair->left.t_ns;
+  looked_at_ = 1;
+  const auto made = without_exceptions(kWhat, [&]() -> Result<void> {
+    judge_ = judge_of_(pair->left.pixels.size());
+    return {};
+  });
+  start(Step::kFirst, [judge = made ? judge_.by_first : nullptr, pair] { return judge ? judge(pair) : RigFit(); });
+}
+
+/// Where it has no memory there is none.
+void RigWatch::add_to_sum(const Pair& pair) {
+  if (!judge_.sum) return;
+  const auto added = without_exceptions(kWhat, [&]() -> Result<void> {
+    judge_.sum->add(pair);
+    return {};
+  });
+  if (!added) judge_.sum.reset();
+}
+
 const RigFit* RigWatch::end() { return step(0, true); }
 
 /// As far as it goes without waiting; of files, where a pair is there by which it counts, further.
@@ -56,7 +72,8 @@ const RigFit* RigWatch::step(TimeNs since_ns, bool last) {
   const auto counts = [&](TimeNs from_ns) { return last || (!live_ && since_ns >= from_ns); };
   const RigFit* news = nullptr;
   if (step_ == Step::kFirst && (counts(kFirstCounts_ns) || ended())) news = take(kFirstCounts_ns);
-  if (step_ == Step::kGather && (last || since_ns >= kSummed_ns)) start_all();
+  const bool gathered = since_ns >= (looked_at_ == kWatchedPairs ? kSummed_ns : kAllCount_ns);
+  if (step_ == Step::kGather && (last || gathered)) start_all();
   if (step_ == Step::kAll && (counts(kAllCount_ns) || ended())) news = take(kAllCount_ns);
   if (step_ == Step::kKnown && (live_ || counts(counts_from_ns_))) {
     fit_ = **found_;
@@ -66,8 +83,9 @@ const RigFit* RigWatch::step(TimeNs since_ns, bool last) {
 }
 
 void RigWatch::start_all() {
-  start(Step::kAll,
-        [judge = judge_.by_all, others = std::move(others_), sum = sum_] { return std::optional(judge(others, *sum)); });
+  start(Step::kAll, [judge = judge_.by_all, others = std::move(others_), sum = judge_.sum] {
+    return std::optional(judge(others, sum.get()));
+  });
 }
 
 void RigWatch::start(Step step, std::function<std::optional<RigFit>()> judge) {
@@ -77,10 +95,9 @@ void RigWatch::start(Step step, std::function<std::optional<RigFit>()> judge) {
     *found = judge();
     return {};
   };
-  const std::string what = "see whether the rig fits";
-  if (auto worker = Worker::start(what, work))
+  if (auto worker = Worker::start(kWhat, work))
     worker_ = std::move(*worker);
-  else if (!without_exceptions(what, [&] { return work({}); }))
+  else if (!without_exceptions(kWhat, [&] { return work({}); }))
     *found_ = RigFit();
 }
 
@@ -93,7 +110,6 @@ const RigFit* RigWatch::take(TimeNs counts_from_ns) {
   step_ = by_first && !*found_ ? Step::kGather : Step::kKnown;
   if (step_ == Step::kGather) return nullptr;
   others_.clear();
-  sum_.reset();
   judge_ = {};
   counts_from_ns_ = counts_from_ns;
   const RigFit& found = **found_;

@@ -17,13 +17,15 @@ namespace duo {
 /// The two steps of RigFitting.
 struct RigJudge {
   std::function<std::optional<RigFit>(const std::shared_ptr<const Pair>& first)> by_first;
-  std::function<RigFit(std::span<const std::shared_ptr<const Pair>> others, const PairSum& sum)> by_all;
+  std::function<RigFit(std::span<const std::shared_ptr<const Pair>> others, const PairSum* sum)> by_all;
+  std::shared_ptr<PairSum> sum;  // for by_all, still empty; null: it looks at none
 };
 
 /// Judges by the first pair, and where that leaves a doubt by it and two that come 0.2 and 0.4 s later, and by the sum of all
-/// in 0.6 s, in a thread of its own; of a live source again every minute. What it finds is news as soon as the thread has
-/// ended. Of files it counts from the same pair on in every run: the first that comes 0.1 s, or 0.8 s, after the first, or the
-/// end. Where the system gives no thread the caller's judges; where it gives no memory nothing is found.
+/// in 0.6 s, in a thread of its own; of a live source again every minute. Where pairs are rare it waits for both of these until
+/// 0.8 s. What it finds is news as soon as the thread has ended. Of files it counts from the same pair on in every run: the
+/// first that comes 0.1 s, or 0.8 s, after the first, or the end. Where the system gives no thread the caller's judges; where
+/// it gives no memory nothing is found.
 ///
 /// Threads  one caller
 class RigWatch {
@@ -49,6 +51,8 @@ class RigWatch {
   /// What is judged, waited for, or known without counting yet.
   enum class Step : std::uint8_t { kFirst, kGather, kAll, kKnown, kDone };
 
+  void begin(const std::shared_ptr<const Pair>& pair);
+  void add_to_sum(const Pair& pair);
   void start(Step step, std::function<std::optional<RigFit>()> judge);
   void start_all();
   bool ended() const;
@@ -63,7 +67,6 @@ class RigWatch {
   int looked_at_ = 0;                         // of them
   RigJudge judge_;
   std::vector<std::shared_ptr<const Pair>> others_;
-  std::shared_ptr<PairSum> sum_;  // of the first 0.6 s
   std::optional<RigFit> fit_;
   std::optional<RigVerdict> told_;
   std::shared_ptr<std::optional<RigFit>> found_;  // the worker's

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <new>
 #include <thread>
+#include <tuple>
 
 #include "duoptic/pipeline.h"
 #include "duoptic/synthetic.h"
@@ -144,11 +145,12 @@ std::optional<RigFit> fit_where_thrown(bool by_first, bool by_all) {
               if (by_first) throw std::bad_alloc();
               return std::nullopt;
             },
-            [=](std::span<const std::shared_ptr<const Pair>> others, const PairSum&) {
+            [=](std::span<const std::shared_ptr<const Pair>> others, const PairSum*) {
               EXPECT_EQ(others.size(), 2u);
               if (by_all) throw std::bad_alloc();
               return wrong;
-            }};
+            },
+            nullptr};
   };
   RigWatch watch(judge_of, false);
   for (int i = 0; i <= 8; ++i) {
@@ -169,6 +171,53 @@ TEST(RigWatch, AWorkerThatFailsFindsNothing) {
   const auto whole = fit_where_thrown(false, false);
   ASSERT_TRUE(whole);
   EXPECT_EQ(whole->what, "wrong");
+}
+
+TEST(RigWatch, WhoHasNoMemoryForAJudgeFindsNothing) {
+  RigWatch watch([](Size) -> RigJudge { throw std::bad_alloc(); }, false);
+  for (int i = 0; i <= 1; ++i) {
+    auto pair = std::make_shared<Pair>();
+    pair->left.t_ns = i * TimeNs{100'000'000};
+    watch.see(pair, false);
+  }
+  ASSERT_TRUE(watch.fit());
+  EXPECT_EQ(watch.fit()->what, "");
+}
+
+/// What all are judged by, of pairs that come so much after each other.
+struct JudgedBy {
+  std::size_t others = 0;
+  int summed = -1;  // -1: there was no sum
+};
+JudgedBy judged_by(TimeNs between_ns, bool sums) {
+  JudgedBy by;
+  const auto judge_of = [&](Size size) -> RigJudge {
+    return {[](const std::shared_ptr<const Pair>&) -> std::optional<RigFit> { return std::nullopt; },
+            [&](std::span<const std::shared_ptr<const Pair>> others, const PairSum* sum) {
+              by = {others.size(), sum != nullptr ? sum->pairs() : -1};
+              return RigFit();
+            },
+            sums ? std::make_shared<PairSum>(size) : nullptr};
+  };
+  RigWatch watch(judge_of, false);
+  for (int i = 0; !watch.settled(); ++i) {
+    auto pair = std::make_shared<Pair>();
+    pair->left.pixels = Image<Rgb8>({16, 12}), pair->right.pixels = Image<Rgb8>({16, 12});
+    pair->left.t_ns = i * between_ns;
+    watch.see(pair, false);
+  }
+  return by;
+}
+
+/// Ten a second are summed for 0.6 s; of few a second all three are looked at, unless the second comes after all counts.
+TEST(RigWatch, JudgesBySumAndOthers) {
+  for (const auto& [between_ms, others, summed] : {std::tuple(100, 2u, 6), std::tuple(300, 2u, 2), std::tuple(500, 2u, 2),
+                                                   std::tuple(700, 2u, 1), std::tuple(900, 1u, 1)}) {
+    const JudgedBy by = judged_by(between_ms * TimeNs{1'000'000}, true);
+    EXPECT_EQ(by.others, others) << between_ms;
+    EXPECT_EQ(by.summed, summed) << between_ms;
+  }
+  EXPECT_EQ(judged_by(100'000'000, false).summed, -1);
 }
 
 TEST(RigWatch, StrictEndsTheRun) {
