@@ -12,7 +12,7 @@ set(dir ${PROJECT_SOURCE_DIR}/src/trackers/body)
 target_sources(duoptic PRIVATE
   ${dir}/behind_back.cpp ${dir}/body.cpp ${dir}/body_learn.cpp ${dir}/body_tracker.cpp ${dir}/candidates.cpp ${dir}/choose.cpp ${dir}/filled_margin.cpp ${dir}/fingers.cpp ${dir}/fit.cpp ${dir}/hidden_by.cpp ${dir}/imagined.cpp ${dir}/lengths.cpp ${dir}/lift.cpp ${dir}/limb_samples.cpp ${dir}/newcomers.cpp ${dir}/points.cpp
   ${dir}/seen_trunk.cpp ${dir}/sides.cpp ${dir}/surface_map.cpp ${dir}/trial.cpp ${dir}/uncover.cpp ${dir}/unlike.cpp ${dir}/upright.cpp)
-duoptic_test(trackers/body_parts ${dir}/body_parts_test.cpp ${dir}/body_sides_test.cpp ${dir}/choose_test.cpp ${dir}/filled_margin_test.cpp ${dir}/fingers_test.cpp ${dir}/hidden_by_test.cpp ${dir}/uncover_test.cpp ${dir}/upright_test.cpp)
+duoptic_test(trackers/body_parts ${dir}/body_parts_test.cpp ${dir}/body_sides_test.cpp ${dir}/body_turned_test.cpp ${dir}/choose_test.cpp ${dir}/filled_margin_test.cpp ${dir}/fingers_test.cpp ${dir}/hidden_by_test.cpp ${dir}/uncover_test.cpp ${dir}/upright_test.cpp)
 duoptic_test(trackers/body_tracker ${dir}/body_tracker_test.cpp ${dir}/body_newcomers_test.cpp ${dir}/body_nobody_test.cpp ${dir}/body_times_test.cpp ${dir}/body_scenes_test.cpp)
 duoptic_test(trackers/body_clips ${dir}/body_clips_test.cpp SLOW)
 set(dir ${PROJECT_SOURCE_DIR}/src/trackers/thesis)

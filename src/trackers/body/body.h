@@ -69,7 +69,8 @@ class Body {
     double astray = 0;  // the same, but bounded while it lies on the back
     double shown = -1;  // ticks from the first frame that showed it to the last one; less than 0: hidden
     bool seen = false, sure = false;
-    bool absent = false;  // its network saw no hand
+    bool hidden_by_limb = false;  // its forearm or thigh points along the view: what is on a surface is not the joint
+    bool absent = false;          // its network saw no hand
   };
 
   explicit Body(double scale) : lengths_(scale) {}

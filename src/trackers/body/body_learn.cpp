@@ -21,7 +21,8 @@ void Body::learn(const FrameView& frame, const Scene& scene) {
   constexpr double kFacing = 0.7;  // of the width: turned by less than 45 degrees
   constexpr double kInLine = 0.9;  // within 25 degrees
   constexpr double kSureKnee = 0.85, kBelow_m = 0.02;
-  const auto seen = [&](JointId id) { return states_[id].seen; };
+  // What is seen of a hip behind its thigh is the thigh.
+  const auto seen = [&](JointId id) { return states_[id].seen && !(is_hip(id) && states_[id].hidden_by_limb); };
   const auto measured = [&](JointId id) {
     return scene.depth.geometry->unproject(scene.points[id].at_px, fitted_.places[id].z);
   };
@@ -48,7 +49,11 @@ void Body::learn(const FrameView& frame, const Scene& scene) {
     const Vec3 shoulders = middle(measured(kLeftShoulder), measured(kRightShoulder)),
                hips = middle(measured(kLeftHip), measured(kRightHip));
     lengths_.learn(Bone::kTrunk, distance(shoulders, hips), 1);
-    const double low_m = hip_mark_.low_m();
+    if (seen(kHead)) {
+      lengths_.learn(Bone::kNeckHead, distance(shoulders, measured(kHead)), 1);
+      lengths_.learn(Bone::kHead, distance(fitted_.places[kNeck], fitted_.places[kHead]), 1);
+    }
+    const double low_m = hip_mark_.low_m();  // by which the marks of this frame were moved up
     for (const Limb& leg : kLegChains) {
       const Vec3 trunk = hips - shoulders, thigh = measured(leg[1]) - measured(leg[0]);
       const double in_line = dot(trunk, thigh) / std::max(norm(trunk) * norm(thigh), 1e-6);
@@ -56,15 +61,11 @@ void Body::learn(const FrameView& frame, const Scene& scene) {
       Vec2 below = scene.points[leg[1]].at_px;
       below.y += kBelow_m * frame.depth.px_per_m(fitted_.places[leg[1]].z);
       const bool sure = seen(leg[1]) && scene.points[leg[1]].visibility > kSureKnee && frame.shows(below);
-      if (sure && in_line > kInLine) hip_mark_.learn(norm(trunk), norm(thigh));
+      if (sure && in_line > kInLine) hip_mark_.learn(norm(trunk), norm(thigh), low_m);
     }
     lengths_.lengthen(Bone::kTrunk, low_m - hip_mark_.low_m());
     lengths_.lengthen(Bone::kThigh, hip_mark_.low_m() - low_m);
     lengths_.lengthen(Bone::kHead, kNeckAbove * (hip_mark_.low_m() - low_m));
-    if (seen(kHead)) {
-      lengths_.learn(Bone::kNeckHead, distance(shoulders, measured(kHead)), 1);
-      lengths_.learn(Bone::kHead, distance(fitted_.places[kNeck], fitted_.places[kHead]), 1);
-    }
     if (std::abs(scene.across.shoulders.z) < kFacing)
       map_.learn(scene.depth, trunk_axes(fitted_.places), fitted_.places, frame.ticks());
   }

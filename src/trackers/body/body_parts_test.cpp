@@ -81,18 +81,20 @@ TEST(BodyLengths, WhatWasMeasuredTooShortIsLengthened) {
   EXPECT_NEAR(early[Bone::kTrunk], late[Bone::kTrunk], 1e-6);
   late.learn(Bone::kTrunk, adult + 0.02, 1), early.learn(Bone::kTrunk, adult + 0.02, 1);
   EXPECT_NEAR(early[Bone::kTrunk], late[Bone::kTrunk], 1e-6);
+  early.lengthen(Bone::kTrunk, 0.07);  // within 15 % of an adult's, as what is learnt
+  EXPECT_NEAR(early[Bone::kTrunk], 1.15 * adult, 1e-9);
 }
 
 TEST(BodyLengths, TrunkAndThighTellHowLowHipsAreMarked) {
   // An adult's trunk and thigh, 0.465 and 0.405 m, between hips that are marked 3 cm too low; the marks go up meanwhile.
   HipMark mark;
-  for (int i = 0; i < 200; ++i) mark.learn(0.465 + 0.03 - mark.low_m(), 0.405 - 0.03 + mark.low_m());
+  for (int i = 0; i < 200; ++i) mark.learn(0.465 + 0.03 - mark.low_m(), 0.405 - 0.03 + mark.low_m(), mark.low_m());
   EXPECT_NEAR(mark.low_m(), 0.85 * 0.03 * 200 / 206, 1e-9);
   // Nor does it move for another size of the same person, or without end.
   HipMark child, other;
-  for (int i = 0; i < 200; ++i) child.learn(0.7 * 0.465, 0.7 * 0.405);
+  for (int i = 0; i < 200; ++i) child.learn(0.7 * 0.465, 0.7 * 0.405, child.low_m());
   EXPECT_NEAR(child.low_m(), 0, 1e-9);
-  for (int i = 0; i < 200; ++i) other.learn(0.3, 0.5);
+  for (int i = 0; i < 200; ++i) other.learn(0.3, 0.5, other.low_m());
   EXPECT_EQ(other.low_m(), -0.04);
 }
 

@@ -13,42 +13,10 @@ using namespace test;  // NOLINT: the made-up person
 
 /// The marks of somebody who stands and shows the face or the back.
 SeenBody marks(bool face) {
-  using enum BodyPoint;
-  constexpr std::pair<BodyPoint, JointId> kMarks[] = {
-      {kNose, kHead},
-      {BodyPoint::kLeftShoulder, JointId::kLeftShoulder},
-      {BodyPoint::kRightShoulder, JointId::kRightShoulder},
-      {BodyPoint::kLeftElbow, JointId::kLeftElbow},
-      {BodyPoint::kRightElbow, JointId::kRightElbow},
-      {BodyPoint::kLeftWrist, JointId::kLeftWrist},
-      {BodyPoint::kRightWrist, JointId::kRightWrist},
-      {kLeftIndex, kLeftHand},
-      {kRightIndex, kRightHand},
-      {kLeftPinky, kLeftHand},
-      {kRightPinky, kRightHand},
-      {BodyPoint::kLeftHip, JointId::kLeftHip},
-      {BodyPoint::kRightHip, JointId::kRightHip},
-      {BodyPoint::kLeftKnee, JointId::kLeftKnee},
-      {BodyPoint::kRightKnee, JointId::kRightKnee},
-      {BodyPoint::kLeftAnkle, JointId::kLeftAnkle},
-      {BodyPoint::kRightAnkle, JointId::kRightAnkle},
-  };
   Places places = standing();
   if (!face)
     for (Vec3& p : places.all) p = {-p.x, p.y, 4 - p.z};
-  const Rectified camera = geometry();
-  SeenBody out;
-  for (const auto& [point, joint] : kMarks) {
-    SeenPoint& mark = out.points[static_cast<std::size_t>(point)];
-    const Vec2 at = camera.project(places[joint]);
-    const Vec3 world = places[joint] - places[kPelvis];
-    mark.x_q8 = static_cast<std::int32_t>(256 * at.x), mark.y_q8 = static_cast<std::int32_t>(256 * at.y);
-    mark.world_q16 = {static_cast<std::int32_t>(65536 * world.x), static_cast<std::int32_t>(65536 * world.y),
-                      static_cast<std::int32_t>(65536 * world.z)};
-    mark.visible_q15 = mark.present_q15 = 32768;
-  }
-  out.next = {160 * 256, 120 * 256, 128 * 256, 0};
-  return out;
+  return marks_of(places);
 }
 
 /// How many of `frames` that take left for right are exchanged, after some that do not.
@@ -84,8 +52,9 @@ TEST(BodySides, AreNotExchangedWhereFramesAreFarApart) {
 
 TEST(BodySides, OfWhoShowsTheFaceAreNotExchanged) { EXPECT_EQ(exchanged(20, 20, 1, true), 0); }
 
-/// How many of `frames` that take one leg for the other are put right, after some that do not.
-int legs_put_right(int agreed, int frames, double apart_m, double ticks = 1) {
+/// How many of `frames` that take one leg for the other are put right, after some that do not, or that mark knees and ankles
+/// outwards by `off_m` of where legs are expected that have not been seen for `hidden` ticks.
+int legs_put_right(int agreed, int frames, double apart_m, double ticks = 1, double off_m = 0, double hidden = 0) {
   Places places = standing();
   for (const Limb& leg : kLegChains)
     for (const std::size_t n : {1, 2, 3}) places[leg[n]].x = (is_left(leg[n]) ? 0.5 : -0.5) * apart_m;
@@ -96,6 +65,12 @@ int legs_put_right(int agreed, int frames, double apart_m, double ticks = 1) {
     Scene scene = right.scene;
     if (i >= agreed)
       for (const std::size_t n : {1, 2, 3}) std::swap(scene.points[kLegChains[0][n]], scene.points[kLegChains[1][n]]);
+    else
+      for (const Limb& leg : kLegChains)
+        for (const std::size_t n : {1, 2}) {
+          scene.points[leg[n]].at_px.x += (is_left(leg[n]) ? 200 : -200) * off_m;
+          scene.expected[leg[n]].hidden = hidden;
+        }
     const double before = scene.points[kLeftKnee].at_px.x;
     sides.put_right(scene, ticks);
     const bool swapped = scene.points[kLeftKnee].at_px.x != before;
@@ -117,6 +92,14 @@ TEST(BodySides, LegsArePutRightForFourTicksAfterFramesThatAgree) {
   EXPECT_EQ(legs_put_right(3, 20, 0.4, 0.5), 8);  // 60 frames per second
   EXPECT_EQ(legs_put_right(3, 20, 0.4, 3), 0);    // 10: legs pass each other in a step
   EXPECT_EQ(legs_put_right(3, 20, 0.06), 0);      // they pass each other now
+}
+
+TEST(BodySides, HiddenLegsAgreeWhereTheyAreAsNearAsThoseThatShow) {
+  // All four together 20 and 32 cm off; 25 are near enough.
+  for (const double hidden : {0.0, 8.0}) {
+    EXPECT_EQ(legs_put_right(3, 2, 0.4, 1, 0.05, hidden), 2) << hidden;
+    EXPECT_EQ(legs_put_right(3, 2, 0.4, 1, 0.08, hidden), 0) << hidden;
+  }
 }
 
 /// A hand in the picture whose network is sure of it, at the marks of the left or right wrist and knuckles.

@@ -63,8 +63,8 @@ class Lengths {
 class HipMark {
  public:
   double low_m() const;
-  /// Lengths between marks that were moved up by low_m(), the thigh in line with the trunk.
-  void learn(double trunk_m, double thigh_m);
+  /// Lengths between marks that were moved up by `moved_m`, the thigh in line with the trunk.
+  void learn(double trunk_m, double thigh_m, double moved_m);
 
  private:
   double sum_m_ = 0, total_ = 0;

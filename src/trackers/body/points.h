@@ -35,7 +35,9 @@ using Points = PerJoint<Point>;
 /// how far this person's hips are, down along it.
 ///
 /// Shape   pelvis, spine, chest and neck have none
-/// Source  the offsets: means over pictures of four rendered people whose joints are those of their skeleton
+/// Source  the offsets of shoulders, hips and head and the share of wrists and knees: means over pictures of four rendered
+///         people whose joints are those of their skeleton; that of elbows: chosen on the shared clips, on their copies and
+///         synthetic ones of seeds 501 and 502, for the full network of bodies (docs/measurements.md)
 Points points_of(const SeenBody& body, BodyModel model, Size picture, double px_per_m, double shoulder_width_m, double ahead_m,
                  double hips_low_m);
 

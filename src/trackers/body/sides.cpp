@@ -35,24 +35,25 @@ void LegSides::put_right(Scene& scene, double ticks) {
   constexpr double kLongestStep = 2;          // ticks: in a longer one legs pass each other
   constexpr double kLess = 0.5;               // of the distance from where they are expected
   constexpr double kLeast_m = 0.3;            // by which the distance of all four falls
-  constexpr double kAgrees_m = 0.25;          // of all four
+  constexpr double kAgrees_m = 0.0625;        // mean of the four, hidden ones counting less
   constexpr double kHiddenCountsLess = 0.25;  // per tick
   const auto off_px = [&](JointId marked, JointId expected) {
     const Vec3 p = scene.expected[expected].p;
     const Vec2 there = scene.depth.geometry->project({p.x, p.y, std::max(p.z, kAnyDepth.near_m)});
     return distance(scene.points[marked].at_px, there);
   };
-  double same_px = 0, other_px = 0;
+  double same_px = 0, other_px = 0, weights = 0;
   for (const std::size_t n : {1, 2}) {
     const JointId left = kLegChains[0][n], right = kLegChains[1][n];
     const double hidden = scene.expected[left].hidden + scene.expected[right].hidden;
     const double weight = 1 / (1 + kHiddenCountsLess * hidden);
+    weights += 2 * weight;
     same_px += weight * (off_px(left, left) + off_px(right, right));
     other_px += weight * (off_px(left, right) + off_px(right, left));
   }
   const double px_per_m = scene.depth.px_per_m(scene.trunk_z_m);
   if (!(other_px < kLess * same_px && same_px - other_px > kLeast_m * px_per_m)) {
-    agreed_ = same_px < kAgrees_m * px_per_m ? agreed_ + 1 : 0;
+    agreed_ = same_px < weights * kAgrees_m * px_per_m ? agreed_ + 1 : 0;
     exchanged_ = 0;
     return;
   }

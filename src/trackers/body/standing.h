@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <utility>
 
+#include "duoptic/detector.h"
 #include "trackers/body/fit.h"
 
 namespace duo::body::test {
@@ -53,6 +55,44 @@ inline Places standing() {
   }
   complete(p);
   return p;
+}
+
+/// What the network of bodies says of somebody of whom everything shows, each joint marked at its centre.
+inline SeenBody marks_of(const Places& places) {
+  constexpr std::pair<BodyPoint, JointId> kMarks[] = {
+      {BodyPoint::kNose, kHead},
+      {BodyPoint::kLeftEar, kHead},
+      {BodyPoint::kRightEar, kHead},
+      {BodyPoint::kLeftShoulder, kLeftShoulder},
+      {BodyPoint::kRightShoulder, kRightShoulder},
+      {BodyPoint::kLeftElbow, kLeftElbow},
+      {BodyPoint::kRightElbow, kRightElbow},
+      {BodyPoint::kLeftWrist, kLeftWrist},
+      {BodyPoint::kRightWrist, kRightWrist},
+      {BodyPoint::kLeftIndex, kLeftHand},
+      {BodyPoint::kRightIndex, kRightHand},
+      {BodyPoint::kLeftPinky, kLeftHand},
+      {BodyPoint::kRightPinky, kRightHand},
+      {BodyPoint::kLeftHip, kLeftHip},
+      {BodyPoint::kRightHip, kRightHip},
+      {BodyPoint::kLeftKnee, kLeftKnee},
+      {BodyPoint::kRightKnee, kRightKnee},
+      {BodyPoint::kLeftAnkle, kLeftAnkle},
+      {BodyPoint::kRightAnkle, kRightAnkle},
+  };
+  const Rectified camera = geometry();
+  SeenBody out;
+  for (const auto& [point, joint] : kMarks) {
+    SeenPoint& mark = out.points[static_cast<std::size_t>(point)];
+    const Vec2 at = camera.project(places[joint]);
+    const Vec3 world = places[joint] - places[kPelvis];
+    mark.x_q8 = static_cast<std::int32_t>(256 * at.x), mark.y_q8 = static_cast<std::int32_t>(256 * at.y);
+    mark.world_q16 = {static_cast<std::int32_t>(65536 * world.x), static_cast<std::int32_t>(65536 * world.y),
+                      static_cast<std::int32_t>(65536 * world.z)};
+    mark.visible_q15 = mark.present_q15 = 32768;
+  }
+  out.next = {160 * 256, 120 * 256, 128 * 256, 0};
+  return out;
 }
 
 /// A scene in which every joint is seen on a surface of its own at its depth, and expected where it is.
