@@ -1,6 +1,6 @@
 # The few commands that everybody needs. Each first installs what is missing (tools/setup; does nothing when all is there).
 # build/release has the tool, and once `make test` was called the tests; build/sanitize the tests with ASan and UBSan.
-.PHONY: build demo test bench deb deb-test soak chaos batch-chaos cluster-test batch-bench readers python-bench fuzz format setup-build setup-test
+.PHONY: build demo test bench deb deb-test soak chaos batch-chaos cluster-test batch-bench readers python-bench networks fuzz format setup-build setup-test
 
 build: setup-build
 	@test -f build/release/build.ninja || cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=OFF >/dev/null
@@ -72,6 +72,17 @@ python-bench: setup-test
 	@cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=ON -DDUO_PYTHON=ON >/dev/null
 	@cmake --build build/release --target duoptic_tool duoptic_python
 	@PYTHONPATH=build/release/python /usr/bin/python3 python/tests/throughput.py build/release/duoptic
+
+# The networks' bits to the letter: eight pictures per network on every Vulkan device and subgroup size, a whole clip in a closed loop on
+# plain loops, all instruction sets and Vulkan. On a software driver about an hour.
+networks: setup-test
+	@cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=ON >/dev/null
+	@cmake --build build/release --target nets_vk_test detectors_vk_test nets_test detectors_test
+	@set -e; for width in 128 256 512; do \
+	  LP_NATIVE_VECTOR_WIDTH=$$width DUOPTIC_LONG=1 build/release/nets_vk_test; \
+	  LP_NATIVE_VECTOR_WIDTH=$$width DUOPTIC_LONG=1 build/release/detectors_vk_test; done
+	@DUOPTIC_LONG=1 build/release/detectors_test --gtest_filter='ClosedLoop.*'
+	@build/release/nets_test --gtest_filter='*Models.*'
 
 # Random bytes for every reader, a minute each.
 fuzz: setup-test

@@ -12,4 +12,7 @@ inline std::filesystem::path data_folder() {
   return data ? data : "../shared/data";
 }
 
+/// DUOPTIC_LONG: tests take every picture, every case and every moment of theirs, which is an hour and not minutes.
+inline bool long_run() { return std::getenv("DUOPTIC_LONG") != nullptr; }
+
 }  // namespace duo::test

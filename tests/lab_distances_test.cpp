@@ -41,7 +41,9 @@ constexpr Torso kTorsos[] = {
     {"dist_cm_250_350", 3.50, 0.49, 0.545, 0.37, 0.50},  {"dist_cm_298_604", 2.98, 0.47, 0.55, 0.33, 0.49},
     {"dist_cm_298_604", 6.04, 0.585, 0.612, 0.41, 0.50}, {"dist_cm_790", 7.90, 0.515, 0.535, 0.50, 0.56}};
 
-constexpr std::array kMatchers = {"sgm", "pyramid"};
+constexpr const char* kMatchers[] = {"sgm", "pyramid"};
+/// The default matcher; all in a long run.
+std::span<const char* const> matchers() { return std::span(kMatchers).first(test::long_run() ? 2 : 1); }
 
 struct Sample {
   const Torso* torso;
@@ -130,7 +132,7 @@ Samples sample_all(const fs::path& persons) {
     const RowOffsets rows = find_row_offsets(pair, 2);
     EXPECT_TRUE(rows.matter() && rows.lens) << left;
     const auto people = finder.look(pair.left.pixels);
-    for (const char* matcher : kMatchers) sample(pair, rows, left.parent_path().filename().string(), matcher, people, out);
+    for (const char* matcher : matchers()) sample(pair, rows, left.parent_path().filename().string(), matcher, people, out);
   }
   return out;
 }
@@ -165,7 +167,7 @@ class LabDistances : public testing::Test {
 };
 
 TEST_F(LabDistances, WithinThreePercentAndOneStep) {
-  for (const char* matcher : kMatchers) {
+  for (const char* matcher : matchers()) {
     std::printf("%s:\n", matcher);
     const auto shares = shares_of_allowed(samples_.marked[matcher]);
     EXPECT_EQ(shares.size(), 29U) << matcher;

@@ -6,11 +6,10 @@
 
 #include "detectors/place.h"
 #include "detectors/see_points.h"
-#include "duoptic/source.h"
 #include "nets/net_run.h"
 #include "stages/crop_square16/crop_square16.h"
 #include "tests/agree.h"
-#include "tests/data.h"
+#include "tests/closed_loop.h"
 #include "tests/model_files.h"
 #ifdef DUO_XNNPACK
 #include "nets/float_peer.h"
@@ -19,58 +18,19 @@
 namespace duo {
 namespace {
 
-std::vector<Picture> pictures_of(const std::string& clip) {
-  std::vector<Picture> out;
-  const auto source = open_source(test::data_folder() / "sequences" / clip / "left.avi");
-  if (!source) return out;
-  for (Picture picture;; picture = {}) {
-    const auto next = (*source)->next(picture);
-    if (!next || *next != Next::kNew) return out;
-    out.push_back(std::move(picture));
-  }
-}
-
-/// Where the detector finds the person in the first picture.
-TurnedSquare start_in(const Picture& picture) {
-  const auto detector = make_detector({.body = BodyModel::kLite});
-  const auto found =
-      detector ? (*detector)->find(picture.pixels, Window::all(picture.pixels.size())) : std::span<const FoundPerson>();
-  return found.empty() ? TurnedSquare() : found[0].region;
-}
-
-/// All points of `count` pictures as one number.
-std::uint64_t hash_of_loop(const std::vector<Picture>& pictures, std::size_t count, const DetectorOptions& options) {
-  const auto detector = make_detector(options);
-  if (!detector) {
-    ADD_FAILURE() << detector.error().what;
-    return 0;
-  }
-  TurnedSquare region = start_in(pictures[0]);
-  std::string places;
-  for (std::size_t i = 0; i < std::min(count, pictures.size()); ++i) {
-    const Look look{pictures[i].pixels, region};
-    SeenBody body;
-    (*detector)->bodies({&look, 1}, {&body, 1});
-    EXPECT_GE(body.score_q15, 16384) << i;
-    region = body.next;
-    for (const SeenPoint& point : body.points)
-      for (const std::int32_t value : {point.x_q8, point.y_q8, point.z_q8, std::int32_t{point.visible_q15}})
-        places.append(reinterpret_cast<const char*>(&value), sizeof(value));
-  }
-  return hash_words(places);
-}
-
 TEST(ClosedLoop, OneHashOnEveryEngine) {
-  const auto pictures = pictures_of("dev_easy_wave");
+  const auto pictures = test::pictures_of("dev_easy_wave");
   if (pictures.empty()) GTEST_SKIP() << "no test data";
   for (const BodyModel body : {BodyModel::kLite, BodyModel::kFull}) {
-    const std::uint64_t whole = hash_of_loop(pictures, pictures.size(), {.body = body});
-    EXPECT_EQ(hash_of_loop(pictures, pictures.size(), {.body = body, .threads = 2}), whole);
-    constexpr std::size_t kFew = 20;  // plain loops take a third of a second a picture
-    const std::uint64_t few = hash_of_loop(pictures, kFew, {.body = body, .plain = true});
-    test::each_target(
-        [&](const std::string& target) { EXPECT_EQ(hash_of_loop(pictures, kFew, {.body = body}), few) << target; });
-    EXPECT_EQ(hash_of_loop(pictures, kFew, {.body = body, .threads = 5}), few);
+    const std::uint64_t whole = test::hash_of_loop(pictures, pictures.size(), {.body = body});
+    EXPECT_EQ(test::hash_of_loop(pictures, pictures.size(), {.body = body, .threads = 2}), whole);
+    const std::size_t few_pictures =
+        test::long_run() ? pictures.size() : 8;  // plain loops take a third of a second per picture
+    const std::uint64_t few = test::hash_of_loop(pictures, few_pictures, {.body = body, .plain = true});
+    test::each_target([&](const std::string& target) {
+      EXPECT_EQ(test::hash_of_loop(pictures, few_pictures, {.body = body}), few) << target;
+    });
+    EXPECT_EQ(test::hash_of_loop(pictures, few_pictures, {.body = body, .threads = 5}), few);
   }
 }
 
@@ -147,9 +107,9 @@ TEST(ClosedLoop, AsNearToTheTruthAsFloatingPoint) {
     double error_px = 0, float_error_px = 0;
     int joints_seen = 0;
     for (const char* clip : {"dev_easy_wave", "dev_hard_beige", "dev_full_walk", "dev_full_turn"}) {
-      const auto pictures = pictures_of(clip);
+      const auto pictures = test::pictures_of(clip);
       const auto truth = nlohmann::json::parse(std::ifstream(test::data_folder() / "sequences" / clip / "truth.json"));
-      TurnedSquare region = start_in(pictures[0]);
+      TurnedSquare region = test::start_in(pictures[0]);
       FloatLoop floats(*net, region);
       for (std::size_t i = 0; i < pictures.size(); ++i) {
         const Look look{pictures[i].pixels, region};

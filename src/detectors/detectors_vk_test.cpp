@@ -1,5 +1,6 @@
 #include "duoptic/detector.h"
 #include "tests/agree_vk.h"
+#include "tests/closed_loop.h"
 
 namespace duo {
 namespace {
@@ -40,6 +41,19 @@ TEST(DetectorVk, GivesTheBitsOfTheProcessor) {
       for (std::size_t k = 0; k < kHandPoints; ++k) EXPECT_TRUE(same(got_hands[i].points[k], want_hands[i].points[k])) << where;
     }
   });
+}
+
+TEST(DetectorVk, ClosedLoopHasTheHashOfTheProcessor) {
+  const auto pictures = test::pictures_of("dev_easy_wave");
+  if (pictures.empty()) GTEST_SKIP() << "no test data";
+  const std::size_t count = test::long_run() ? pictures.size() : 3;
+  for (const BodyModel body : {BodyModel::kLite, BodyModel::kFull}) {
+    if (body == BodyModel::kFull && !test::long_run()) continue;
+    const std::uint64_t want = test::hash_of_loop(pictures, count, {.body = body});
+    test::each_device([&](vk::Device& device, const std::string& where) {
+      EXPECT_EQ(test::hash_of_loop(pictures, count, {.body = body, .device = device.info().name}), want) << where;
+    });
+  }
 }
 
 }  // namespace

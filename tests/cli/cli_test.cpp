@@ -10,6 +10,7 @@
 #include "duoptic/sink.h"
 #include "duoptic/source.h"
 #include "duoptic/synthetic.h"
+#include "tests/data.h"
 #include "tool.h"
 
 namespace duo {
@@ -319,7 +320,7 @@ TEST_F(Cli, GoesOnWithFewerThreadsAndSaysWhatTheMachineRefuses) {
     fs::remove_all(at("few"));
   }
   int refused = 0;
-  for (int n = 1; n < 600; n += 1 + n / 4)
+  for (int n = 1; n < 600; n += 1 + n / (test::long_run() ? 4 : 2))
     for (const char* ever : {"", "+"}) {
       const Ended ended = run(depth + "-o out", preload + "memory=" + std::to_string(n) + ever);
       EXPECT_TRUE(ended.exit == 0 || ended.exit == 1) << n << ever << ": " << ended.exit << " " << ended.err;
@@ -329,7 +330,7 @@ TEST_F(Cli, GoesOnWithFewerThreadsAndSaysWhatTheMachineRefuses) {
       fs::remove_all(at("out"));
     }
   EXPECT_GT(refused, 10);
-  for (int n = 1; n < 24; ++n) {
+  for (int n = 1; n < 24; n += test::long_run() ? 1 : 3) {
     const Ended ended = run(depth + "-o out", preload + "files=" + std::to_string(n) + "+");
     EXPECT_TRUE(ended.exit == 0 || ended.exit == 1) << n << ": " << ended.exit << " " << ended.err;
     EXPECT_TRUE(ended.exit == 0 || ended.err.find("Too many open files") != std::string::npos) << n << ": " << ended.err;

@@ -14,6 +14,7 @@
 
 #include "duoptic/statistics.h"
 #include "duoptic/synthetic.h"
+#include "tests/data.h"
 #include "tool.h"
 
 namespace duo {
@@ -69,7 +70,7 @@ TEST(Soak, MemoryStandsStillAndLinesAreInTime) {
   using namespace std::chrono_literals;
   const char* asked = std::getenv("DUOPTIC_SOAK_S");
   const bool alone = asked != nullptr;
-  const int seconds = alone ? std::max(20, std::atoi(asked)) : 20;
+  const int seconds = alone ? std::max(20, std::atoi(asked)) : test::long_run() ? 20 : 12;
   const Size size = alone ? Size{640, 480} : Size{320, 240};
   const test::TempFolder folder;
   auto clip = SyntheticClip::open({.size = size, .script = "wave"}, 2);

@@ -51,14 +51,13 @@ CONF
 
 # tasks_of NODE: the processes that run on it, and what holds them; nothing else of this machine has this folder's configuration.
 tasks_of() {
-  local process
-  for process in /proc/[0-9]*; do
-    if grep -qz "^SLURMD_NODENAME=$1$" "$process/environ" 2>/dev/null && grep -qz "^SLURM_CONF=$SLURM_CONF$" "$process/environ" 2>/dev/null; then
-      echo "${process#/proc/}"
-      local parent
-      parent=$(awk '/^PPid/ { print $2 }' "$process/status" 2>/dev/null || true)
-      [[ -n $parent && $(cat "/proc/$parent/comm" 2>/dev/null) == slurmstepd* ]] && echo "$parent"
-    fi
+  local environment process parent
+  for environment in $(grep -lzs "^SLURMD_NODENAME=$1$" /proc/[0-9]*/environ); do
+    grep -qzs "^SLURM_CONF=$SLURM_CONF$" "$environment" || continue
+    process=${environment%/environ}
+    echo "${process#/proc/}"
+    parent=$(awk '/^PPid/ { print $2 }' "$process/status" 2>/dev/null || true)
+    [[ -n $parent && $(cat "/proc/$parent/comm" 2>/dev/null) == slurmstepd* ]] && echo "$parent"
   done | sort -u
 }
 kill_node() {
@@ -86,7 +85,7 @@ until_true() {
   shift
   while ! "$@"; do
     ((SECONDS < end)) || fail "waited in vain for: $*"
-    sleep 0.1
+    sleep 0.25
   done
 }
 say() { printf '%4d s  %s\n' "$SECONDS" "$1"; }

@@ -72,8 +72,11 @@ void expect_agree(Size size, int max_disparity, const SemiGlobalParams& params, 
   const SemiGlobal in = views.in(max_disparity, params);
   Match want(size);
   ref::semi_global(in, want.out());
+  // One thread and one number of several, another in each case: starting threads takes longer than the work.
+  static int cases = 0;
+  const int several = 2 + cases++ % 4;
   test::each_target([&](const std::string& target) {
-    for (const int threads : {1, 2, 3, 4, 5}) {
+    for (const int threads : {1, several}) {
       Pool pool(threads);
       simd::SemiGlobalScratch scratch(size, max_disparity, params, threads);
       for (int frame = 0; frame < 2; ++frame) {  // a second frame must not see anything of the first

@@ -231,6 +231,7 @@ TEST_P(Clips, ThesisTrackerDoesNotAllocate) {
 // surface: sgm draws them closer together than pyramid does.
 TEST_P(Clips, BothArms) { expect_both_arms(60); }
 TEST_P(Clips, BothArmsWithPyramid) {
+  if (GetParam().clip != std::string("dev_easy_wave") && !test::long_run()) GTEST_SKIP() << "skipped: only with DUOPTIC_LONG";
   clip_ = Clip();
   open("pyramid");
   expect_both_arms(45);
