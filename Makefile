@@ -79,10 +79,10 @@ networks: setup-test
 	@cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=ON >/dev/null
 	@cmake --build build/release --target nets_vk_test detectors_vk_test nets_test detectors_test
 	@set -e; for width in 128 256 512; do \
-	  LP_NATIVE_VECTOR_WIDTH=$$width DUOPTIC_LONG=1 build/release/nets_vk_test; \
-	  LP_NATIVE_VECTOR_WIDTH=$$width DUOPTIC_LONG=1 build/release/detectors_vk_test; done
-	@DUOPTIC_LONG=1 build/release/detectors_test --gtest_filter='ClosedLoop.*'
-	@build/release/nets_test --gtest_filter='*Models.*'
+	  LP_NATIVE_VECTOR_WIDTH=$$width DUOPTIC_LONG=1 build/release/src/nets_vk_test; \
+	  LP_NATIVE_VECTOR_WIDTH=$$width DUOPTIC_LONG=1 build/release/src/detectors_vk_test; done
+	@DUOPTIC_LONG=1 build/release/src/detectors_test --gtest_filter='ClosedLoop.*'
+	@build/release/src/nets_test --gtest_filter='*Models.*'
 
 # Random bytes for every reader, a minute each.
 fuzz: setup-test
