@@ -20,26 +20,30 @@ SyntheticPair room() {
   return render_synthetic(synthetic, 2);
 }
 
-TEST(Focus, PartsHaveFewSizes) {
+TEST(Focus, PartsHaveFewSizesWhereAsked) {
   // 300 px wide at 100: up to 320, four eighths of 640, to the right end; 130 rows: up to 240; 20 disparities: 64, which begin
   // at 0, as 57 - 64 is less.
-  FocusPart part = focus_part({{100, 50, 300, 130}, 37, 57}, {640, 480}, 192);
+  FocusPart part = focus_part({{100, 50, 300, 130}, 37, 57}, {640, 480}, 192, true);
   EXPECT_EQ(part.kept, (Window{100, 50, 300, 130}));
   EXPECT_EQ(part.matched, (Window{80, 50, 320, 240}));
   EXPECT_EQ(part.first_disparity, 0);
   EXPECT_EQ(part.disparities, 64);
   // What more is searched lies behind: 100 - 64.
-  EXPECT_EQ(focus_part({{100, 50, 300, 130}, 70, 100}, {640, 480}, 192).first_disparity, 36);
+  EXPECT_EQ(focus_part({{100, 50, 300, 130}, 70, 100}, {640, 480}, 192, true).first_disparity, 36);
   // What would reach over the picture and beyond the disparities moves back; the right part is inside the picture, too.
-  part = focus_part({{-20, 400, 100, 300}, 170, 400}, {640, 480}, 192);
+  part = focus_part({{-20, 400, 100, 300}, 170, 400}, {640, 480}, 192, true);
   EXPECT_EQ(part.kept, (Window{0, 400, 80, 80}));
   EXPECT_EQ(part.matched, (Window{0, 360, 80, 120}));
   EXPECT_EQ(part.first_disparity, 0);
   EXPECT_EQ(part.disparities, 192);
   // All there is.
-  part = focus_part({{0, 0, 640, 480}, 0, 150}, {640, 480}, 150);
+  part = focus_part({{0, 0, 640, 480}, 0, 150}, {640, 480}, 150, true);
   EXPECT_EQ(part.matched, (Window{0, 0, 640, 480}));
   EXPECT_EQ(part.disparities, 150);
+  // Else 32 columns, and rows as they are.
+  part = focus_part({{100, 50, 300, 130}, 37, 57}, {640, 480}, 192, false);
+  EXPECT_EQ(part.kept, (Window{100, 50, 300, 130}));
+  EXPECT_EQ(part.matched, (Window{80, 50, 320, 130}));
 }
 
 TEST(Focus, OnAllThereIsItIsTheWholeFrame) {

@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kStep_q4 = 16;        // of one px of disparity
 constexpr int kDisparityStep = 64;  // what the matchers' vectors take at once
+constexpr int kColumnStep = 32;     // likewise of columns
 
 /// `length` up to a multiple of `step`, `whole` at most.
 int rounded_up(int length, int step, int whole) { return std::min((length + step - 1) / step * step, whole); }
@@ -20,13 +21,13 @@ View<T> cut(View<T> map, const Window& window, int shift = 0) {
 
 }  // namespace
 
-FocusPart focus_part(const Focus& focus, Size size, int max_disparity) {
+FocusPart focus_part(const Focus& focus, Size size, int max_disparity, bool few_sizes) {
   FocusPart out;
   const Window& kept = out.kept = focus.window.within(size);
   DUO_CHECK(!kept.empty());
   Window& matched = out.matched;
-  matched.width = rounded_up(kept.width, std::max(size.width / 8, 1), size.width);
-  matched.height = rounded_up(kept.height, std::max(size.height / 4, 1), size.height);
+  matched.width = rounded_up(kept.width, few_sizes ? std::max(size.width / 8, 1) : kColumnStep, size.width);
+  matched.height = few_sizes ? rounded_up(kept.height, std::max(size.height / 4, 1), size.height) : kept.height;
   matched.x = std::max(kept.x_end() - matched.width, 0);
   matched.y = std::min(kept.y, size.height - matched.height);
   const int first = std::clamp(focus.disparity_begin, 0, std::min(matched.x, max_disparity - 1));

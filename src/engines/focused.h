@@ -14,8 +14,8 @@
 namespace duo {
 
 /// What is matched for a focus, as a pair of its own: its right picture lies `first_disparity` px to the left of the left one.
-/// Sizes have few values, so that memory that was made for one serves again: eighths of the picture's width, quarters of its
-/// height, and whole vectors of disparities.
+/// Widths and disparities are whole vectors. Where few sizes are wanted, as memory is made for each, they are eighths of the
+/// picture's width and quarters of its height.
 ///
 /// Units  px of the left rectified picture
 struct FocusPart {
@@ -25,7 +25,7 @@ struct FocusPart {
 };
 
 /// `focus` not empty inside the picture.
-FocusPart focus_part(const Focus& focus, Size size, int max_disparity);
+FocusPart focus_part(const Focus& focus, Size size, int max_disparity, bool few_sizes);
 
 /// The part of a pair, whose disparity 0 is the part's first one; and where its matches go. Views.
 /// `balanced`: the pair's right picture, as it is compared.
@@ -56,7 +56,7 @@ class Focused {
     const auto match_part = [&]<class M>(M& matcher) {
       DUO_CHECK(MatchesParts<M> || MatchesItsSize<M>);  // as Engine::can_focus() says
       if constexpr (MatchesParts<M> || MatchesItsSize<M>) {
-        const FocusPart part = focus_part(focus, prepared.size, prepared.setup.max_disparity);
+        const FocusPart part = focus_part(focus, prepared.size, prepared.setup.max_disparity, !MatchesParts<M>);
         const Measured measured = matcher.measure(whole, timer);
         const GrayPair pair = part_of(whole, measured.right, part);
         if constexpr (MatchesParts<M>)
