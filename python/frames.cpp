@@ -7,73 +7,62 @@
 
 #include "binding.h"
 #include "duoptic/row_offsets.h"
+#include "duoptic/sink_kinds.h"
 
 namespace duo::python {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, BodyModel>, 3> kModels = {
-    {{"lite", BodyModel::kLite}, {"full", BodyModel::kFull}, {"heavy", BodyModel::kHeavy}}};
-constexpr std::array<std::pair<std::string_view, ViewLayout>, 4> kLayouts = {{{"side-by-side", ViewLayout::kSideBySide},
-                                                                              {"right-left", ViewLayout::kRightLeft},
-                                                                              {"top-bottom", ViewLayout::kTopBottom},
-                                                                              {"bottom-top", ViewLayout::kBottomTop}}};
-
+/// The value of an enumeration by its names in its order.
+///
 /// Errors  none of these names, with all that there are
 template <class T, std::size_t N>
-T named(const std::array<std::pair<std::string_view, T>, N>& table, std::string_view name, const char* what) {
+T named(const std::array<std::string_view, N>& all, std::string_view name, const char* what) {
   std::string names;
-  for (const auto& [known, of] : table) {
-    if (known == name) return of;
-    names += (names.empty() ? "" : ", ") + std::string(known);
+  for (std::size_t i = 0; i < N; ++i) {
+    if (all[i] == name) return static_cast<T>(i);
+    names += (names.empty() ? "" : ", ") + std::string(all[i]);
   }
   refuse("there is no " + std::string(what) + " '" + std::string(name) + "'; there are " + names);
 }
 
-/// Where the pairs come from.
-struct Input {
-  std::unique_ptr<PairSource> pairs;
+/// Where the pairs come from, and how to open them again.
+struct Given {
+  Input input;
   std::optional<Rig> rig;
-  std::vector<std::string> names;
   PairWish wish;
-  std::filesystem::path left, right;
+  std::string left, right;
+  Input open() const { return value(open_input(left, right, rig, wish)); }
 };
 
 /// `keywords` loses those that say it.
-Input open_input(const py::object& left, const py::object& right, py::dict& keywords) {
-  Input input{.pairs = {}, .rig = {}, .names = {}, .wish = {}, .left = path_of(left, "left"), .right = path_of(right, "right")};
-  input.rig = rig_of(take<py::object>(keywords, "rig", py::none()));
+Given open_given(const py::object& left, const py::object& right, py::dict& keywords) {
+  Given given{.input = {}, .rig = {}, .wish = {}, .left = path_of(left, "left"), .right = path_of(right, "right")};
+  given.rig = rig_of(take<py::object>(keywords, "rig", py::none()));
   const double skew_ms = take<double>(keywords, "skew_ms", 0);
   if (!(std::abs(skew_ms) <= 1e9)) refuse("skew_ms is not -1e9 .. 1e9");
-  input.wish.skew_ns = std::llround(skew_ms * 1e6);
+  given.wish.skew_ns = std::llround(skew_ms * 1e6);
   if (const auto layout = take<std::optional<std::string>>(keywords, "layout", std::nullopt))
-    input.wish.layout = named(kLayouts, *layout, "layout");
-  if (input.rig) input.wish.cameras.size = input.rig->left.size;
-  input.names = {input.left.string()};
-  if (!input.right.empty()) input.names.push_back(input.right.string());
+    given.wish.layout = named<ViewLayout>(kViewLayoutNames, *layout, "layout");
   const py::gil_scoped_release others_go_on;
-  input.pairs = value(open_pairs(input.left, input.right, input.wish));
-  if (!input.rig) input.rig = input.pairs->rig();
-  return input;
+  given.input = given.open();
+  return given;
 }
 
 /// Of files without a rig: what their rows are off, where it matters.
-std::optional<RowOffsets> rows_of(const Input& input, int threads) {
-  if (input.rig || input.pairs->live()) return std::nullopt;
-  const auto again = value(open_pairs(input.left, input.right, input.wish));
-  const RowOffsets rows = value(find_row_offsets(*again, std::max(threads, 1)));
+std::optional<RowOffsets> rows_of(const Given& given, int threads) {
+  if (given.input.rig || given.input.pairs->live()) return std::nullopt;
+  const Input again = given.open();
+  const RowOffsets rows = value(find_row_offsets(*again.pairs, std::max(threads, 1)));
   return rows.matter() ? std::optional(rows) : std::nullopt;
 }
 
 std::unique_ptr<Sink> sink_of(const std::string& target, Axes axes, const TrackHeader& header, std::string& note) {
   if (target.starts_with("osc://")) return value(make_osc(target.substr(6), axes));
   if (target.starts_with("vmc://")) return value(make_vmc(target.substr(6)));
-  if (target.ends_with(".jsonl")) return value(make_json_lines(target, header));
-  if (target.ends_with(".csv")) return value(make_csv(target, axes));
-  if (target.ends_with(".bvh")) return value(make_bvh(target, header));
-  if (target.ends_with(".glb")) return value(make_gltf(target, header));
-  if (target.ends_with(".trc")) return value(make_trc(target, header));
-  if (target.ends_with(".mcap")) return value(make_mcap(target, header));
-  if (target.ends_with(".mp4")) return value(make_panel_video(target, header, note));
+  SinkTargets how;
+  how.axes = axes;
+  for (const SinkKind& kind : sink_kinds())
+    if (kind.is_file() && target.ends_with(kind.target)) return value(kind.make(target, how, header, note));
   refuse("cannot write '" + target +
          "': no kind of output; there are .jsonl, .csv, .bvh, .glb, .trc, .mcap, .mp4, osc://HOST:PORT and vmc://HOST:PORT");
 }
@@ -228,7 +217,8 @@ class Frames {
 };
 
 std::unique_ptr<Frames> open_frames(const py::object& left, const py::object& right, py::kwargs keywords) {
-  Input input = open_input(left, right, keywords);
+  Given given = open_given(left, right, keywords);
+  Input& input = given.input;
   const MatchOptions options = MatchOptions::take_from(keywords);
   PipelineSetup setup;
   setup.names = input.names;
@@ -237,7 +227,7 @@ std::unique_ptr<Frames> open_frames(const py::object& left, const py::object& ri
   setup.frames = options.setup(input.rig);
   setup.frames.many_at_once = true;
   setup.tracker = take<std::optional<std::string>>(keywords, "tracker", std::nullopt).value_or("");
-  setup.body_model = named(kModels, take<std::string>(keywords, "model", "full"), "model");
+  setup.body_model = named<BodyModel>(kBodyModelNames, take<std::string>(keywords, "model", "full"), "model");
   setup.first = take<std::int64_t>(keywords, "first", 0);
   setup.every = take<std::int64_t>(keywords, "every", 1);
   setup.check = take<bool>(keywords, "strict", false) ? RigCheck::kStrict : RigCheck::kTell;
@@ -246,12 +236,13 @@ std::unique_ptr<Frames> open_frames(const py::object& left, const py::object& ri
   if (setup.first < 0 || setup.every < 1) refuse("first is not 0 or more, or every not 1 or more");
   const double frame_s = input.pairs->frame_s();
   const py::gil_scoped_release others_go_on;
-  if (!keep_rows) setup.frames.rows = rows_of(input, options.threads);
+  if (!keep_rows) setup.frames.rows = rows_of(given, options.threads);
   return std::make_unique<Frames>(value(Pipeline::open(std::move(input.pairs), std::move(setup))), frame_s);
 }
 
 std::int64_t record(const py::object& left, const py::object& right, const std::filesystem::path& path, py::kwargs keywords) {
-  Input input = open_input(left, right, keywords);
+  Given given = open_given(left, right, keywords);
+  Input& input = given.input;
   const double seconds = take<double>(keywords, "seconds", 0);
   const bool replace = take<bool>(keywords, "replace", false);
   all_taken(keywords, "record");
@@ -324,8 +315,10 @@ void add_frames(py::module_& module) {
       "     skew_ms=0.0, layout=None, keep_rows=False) -> Frames\n\n"
       "Frames of two videos, pictures or cameras ('camera:0'), or of one recording. rig: a path or a Rig; a recording may "
       "bring\n"
-      "its own. tracker: 'body', 'body_hands', 'arm' or 'thesis'. maps: of 'color', 'depth', 'disparity', 'views', 'confidence',\n"
-      "those that are wanted; without it all but confidence. near_m: how near things may be, m, in place of max_disparity, px.\n\n"
+      "its own. tracker: 'body', 'body_hands', 'arm' or 'thesis'. maps: of 'color', 'depth', 'disparity', 'views', "
+      "'confidence',\n"
+      "those that are wanted; without it all but confidence. near_m: how near things may be, m, in place of max_disparity, "
+      "px.\n\n"
       "Errors: duoptic.Error with the line that the tool prints.");
   module.def("record", &record, py::arg("left"), py::arg("right"), py::arg("path"),
              "record(left, right, path, *, rig=None, seconds=0.0, replace=False, skew_ms=0.0, layout=None) -> int\n\n"

@@ -37,8 +37,6 @@ MatchOptions MatchOptions::take_from(py::dict& keywords) {
 }
 
 Setup MatchOptions::setup(const std::optional<Rig>& rig) const {
-  constexpr double kNearest_m = 0.5;  // as of the tool's tracking
-  constexpr int kMostDisparities = 256;
   const auto wanted = [this](const char* name, bool otherwise) {
     return maps ? std::find(maps->begin(), maps->end(), name) != maps->end() : otherwise;
   };
@@ -50,10 +48,9 @@ Setup MatchOptions::setup(const std::optional<Rig>& rig) const {
   setup.fill = fill;
   if (max_disparity) setup.max_disparity = *max_disparity;
   if (near_m && !rig) refuse("near_m needs a rig; give rig, or max_disparity in its place");
-  if (rig && !max_disparity) {
-    setup.max_disparity = value(disparities_from(*rig, near_m.value_or(kNearest_m)));
-    setup.max_disparity = std::min(setup.max_disparity, near_m ? Engine::kMaxDisparity : kMostDisparities);
-  }
+  if (rig && !max_disparity)
+    setup.max_disparity =
+        near_m ? std::min(value(disparities_from(*rig, *near_m)), Engine::kMaxDisparity) : value(disparities_for_people(*rig));
   setup.wants = {.color = wanted("color", true),
                  .depth = wanted("depth", rig.has_value()),
                  .confidence = wanted("confidence", false),

@@ -116,7 +116,7 @@ inline std::vector<std::shared_ptr<const Frame>> frames_of(PipelineSetup setup) 
   return frames_of(pipeline);
 }
 
-void expect_same_maps(const Frame& want, const Frame& got, const std::string& who) {
+inline void expect_same_maps(const Frame& want, const Frame& got, const std::string& who) {
   EXPECT_EQ(want.sequence, got.sequence) << who;
   EXPECT_EQ(want.skew_ns, got.skew_ns) << who;
   test::expect_same<std::uint8_t>(want.right, got.right, who + " right");

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "command.h"
-#include "duoptic/archive.h"
 #include "duoptic/interrupt.h"
+#include "duoptic/reports.h"
 
 namespace duo::app::batch {
 namespace {
@@ -41,10 +40,6 @@ struct Options {
 BatchTool this_tool(const Options& options) {
   std::error_code error;
   return {.program = fs::read_symlink("/proc/self/exe", error), .version = DUO_VERSION, .threads = options.threads};
-}
-
-void print_json(const nlohmann::json& json) {
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 Result<Exit> plan(Options options, const CLI::App& app) {
@@ -85,70 +80,11 @@ Result<Exit> plan(Options options, const CLI::App& app) {
   return Exit::kOk;
 }
 
-nlohmann::json json_of(const Batch& batch, const BatchStatus& status) {
-  nlohmann::json hosts = nlohmann::json::object(), failures = nlohmann::json::array(), cut = failures, running = failures;
-  for (const auto& [name, host] : status.hosts)
-    hosts[name] = {{"tasks", host.tasks},
-                   {"frames", host.frames},
-                   {"frames_per_s", host.seconds > 0 ? static_cast<double>(host.frames) / host.seconds : 0}};
-  for (std::size_t i = 0; i < status.tasks.size(); ++i) {
-    const TaskStatus& task = status.tasks[i];
-    const ArchiveTask& of = batch.tasks()[i];
-    if (task.state == TaskState::kRunning) running.push_back(of.id);
-    if (task.state == TaskState::kDone && task.exit == 3) cut.push_back(of.id);
-    if (task.state != TaskState::kDone && task.failures > 0)
-      failures.push_back({{"id", of.id},
-                          {"key", of.key},
-                          {"exit", task.exit},
-                          {"tries", task.failures},
-                          {"for_good", task.state == TaskState::kFailed},
-                          {"host", task.host},
-                          {"what", task.what}});
-  }
-  const nlohmann::json slowest = status.slowest ? nlohmann::json{{"id", batch.tasks()[*status.slowest].id},
-                                                                 {"seconds", status.tasks[*status.slowest].seconds}}
-                                                : nlohmann::json();
-  return {{"tasks", status.tasks.size()},
-          {"done", status.done},
-          {"cut", cut},
-          {"running", running},
-          {"failed", status.failed},
-          {"missing", status.missing},
-          {"failures", failures},
-          {"faults", status.faults},
-          {"hosts", hosts},
-          {"left_s", status.left_s ? nlohmann::json(*status.left_s) : nlohmann::json()},
-          {"slowest", slowest}};
-}
-
-std::string line_of(const BatchStatus& status) {
-  std::string text = fmt::format("{} of {} done", status.done, status.tasks.size());
-  if (status.cut > 0) text += fmt::format(" ({} cut)", status.cut);
-  if (status.running > 0) text += fmt::format(", {} running", status.running);
-  if (status.failed > 0) text += fmt::format(", {} failed", status.failed);
-  if (status.missing > 0) text += fmt::format(", {} missing", status.missing);
-  const bool goes_on = status.running > 0 || status.missing > 0;
-  if (goes_on && status.left_s) text += fmt::format(", about {:.0f} min left", *status.left_s / 60 + 0.5);
-  return text;
-}
-
 void print(const Batch& batch, const BatchStatus& status, const Options& options) {
-  if (options.json) return print_json(json_of(batch, status));
-  if (options.quiet) return;
-  fmt::print("{}\n", line_of(status));
-  for (const auto& [name, host] : status.hosts)
-    if (host.seconds > 0)
-      fmt::print("{}: {} tasks, {} frames, {:.1f} frames/s of each worker\n", name, host.tasks, host.frames,
-                 static_cast<double>(host.frames) / host.seconds);
-  if (status.slowest)
-    fmt::print("slowest: {}, {:.1f} s\n", batch.tasks()[*status.slowest].id, status.tasks[*status.slowest].seconds);
-  for (std::size_t i = 0; i < status.tasks.size(); ++i) {
-    const TaskStatus& task = status.tasks[i];
-    if (task.state == TaskState::kDone && task.exit == 3) fmt::print("cut: {}\n", batch.tasks()[i].id);
-    if (task.state != TaskState::kDone && task.failures > 0)
-      fmt::print("{}{}\n", task.state == TaskState::kFailed ? "failed: " : "not done: ", task.what);
-  }
-  for (const std::string& fault : status.faults) fmt::print("fault: {}\n", fault);
+  if (options.json)
+    fmt::print("{}\n", json_of(batch, status));
+  else if (!options.quiet)
+    fmt::print("{}", text_of(batch, status));
 }
 
 Exit exit_of(const BatchStatus& status) {

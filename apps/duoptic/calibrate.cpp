@@ -1,21 +1,16 @@
 // duoptic calibrate: pictures of a board in, a rig out that says how good it is.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 
 #include "command.h"
-#include "duoptic/calibrate.h"
 #include "duoptic/interrupt.h"
+#include "duoptic/reports.h"
 #include "duoptic/stdout.h"
-#include "from_scene.h"
+#include "input.h"
 #include "progress.h"
-#include "rig_report.h"
 
 namespace duo::app::calibrate {
 namespace {
@@ -30,14 +25,14 @@ constexpr char kFooter[] =
     "  duoptic calibrate shots/left shots/right --board charuco:9x6 --square-mm 30 -o rig.json";
 
 struct Options {
-  std::string left, right, board = "chessboard:9x6", output, report, left_name = "left", right_name = "right";
+  std::string board = "chessboard:9x6", output, report, left_name = "left", right_name = "right";
   std::optional<double> square_mm;
   double near_m = 0.5;
   bool json = false, quiet = false, no_board = false;
-  FromSceneOptions from_scene;
+  InputOptions input;
+  std::string intrinsics;            // of --from-scene: a rig file whose cameras are used; empty: unknown lenses, not metric
+  std::optional<double> baseline_m;  // likewise; none: that of the intrinsics' rig
 };
-
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 /// rig.json gets rig_report.html, a rig on stdout none.
 std::filesystem::path report_path(const Options& options) {
@@ -45,92 +40,6 @@ std::filesystem::path report_path(const Options& options) {
   const std::filesystem::path rig = options.output;
   if (is_stdout(rig)) return {};
   return rig.parent_path() / (rig.stem().string() + "_report.html");
-}
-
-nlohmann::json to_json(const Calibration& c, const Calibrator& calibrator, const RigDescription& description,
-                       const Options& options) {
-  const RigErrors& e = c.rig.errors;
-  const RigUncertainty& u = *c.rig.uncertainty;
-  nlohmann::json views = nlohmann::json::array();
-  for (const BoardView& view : c.views)
-    views.push_back({{"name", view.name},
-                     {"used", view.used},
-                     {"why_not", view.why_not},
-                     {"left_corners", view.left.size()},
-                     {"right_corners", view.right.size()},
-                     {"edge_px", view.sharp_px}});
-  return {{"rig", options.output},
-          {"report", report_path(options).string()},
-          {"warnings", c.warnings},
-          {"pairs", calibrator.pairs()},
-          {"views", views},
-          {"coverage", {calibrator.coverage(0), calibrator.coverage(1)}},
-          {"reprojection_px", c.rig.reprojection_rms_px},
-          {"errors",
-           {{"left_px", e.left_px},
-            {"right_px", e.right_px},
-            {"row_px", e.row_px},
-            {"held_out_px", e.held_out_px},
-            {"held_out_row_px", e.held_out_row_px},
-            {"held_out_shape_mm", 1000 * c.held_out_shape_m},
-            {"held_out_shape_at_m", c.held_out_z_m}}},
-          {"uncertainty",
-           {{"left_focal_px", u.left_focal_px},
-            {"right_focal_px", u.right_focal_px},
-            {"tilt_deg", u.tilt_rad * kDegrees},
-            {"pan_deg", u.pan_rad * kDegrees},
-            {"roll_deg", u.roll_rad * kDegrees},
-            {"baseline_mm", 1000 * u.baseline_m},
-            {"depth_at_m", kJudgedDepths_m},
-            {"depth_mm", {1000 * u.depth_m[0], 1000 * u.depth_m[1], 1000 * u.depth_m[2]}}}},
-          {"baseline_m", c.rig.baseline_m()},
-          {"common_degrees", description.common_degrees},
-          {"common_share", description.common_share},
-          {"near_m", description.near_m},
-          {"max_disparity", description.max_disparity},
-          {"depth_step_at_1_2_3_m", description.step_m}};
-}
-
-/// A line a reason, with the first few views that it left out.
-void print_unused(const std::vector<BoardView>& views) {
-  constexpr std::size_t kNamed = 4;
-  std::map<std::string, std::vector<std::string>> names;
-  for (const BoardView& view : views)
-    if (!view.used && view.why_not != "no board found" && view.why_not != "much like another")
-      names[view.why_not.substr(0, view.why_not.find(':'))].push_back(view.name);
-  for (auto& [why, of] : names) {
-    const std::size_t count = of.size();
-    if (count > kNamed) of.resize(kNamed), of.push_back("...");
-    fmt::print("  {} not used: {} ({})\n", count, why, fmt::join(of, "; "));
-  }
-}
-
-void print(const Calibration& c, const Calibrator& calibrator, const RigDescription& description, const Options& options) {
-  const Rig& rig = c.rig;
-  const RigErrors& e = rig.errors;
-  const RigUncertainty& u = *rig.uncertainty;
-  const auto used = std::count_if(c.views.begin(), c.views.end(), [](const BoardView& v) { return v.used; });
-  fmt::print("{} of {} pairs used; corners cover {:.0f} % of the left picture and {:.0f} % of the right\n", used,
-             calibrator.pairs(), 100 * calibrator.coverage(0), 100 * calibrator.coverage(1));
-  print_unused(c.views);
-  fmt::print("error of the corners    {:.3f} px (left {:.3f}, right {:.3f}); of rows {:.3f} px\n", rig.reprojection_rms_px,
-             e.left_px, e.right_px, e.row_px);
-  fmt::print("on views left out       {:.3f} px, rows {:.3f} px; boards {:.2f} m away measured to {:.1f} mm\n", e.held_out_px,
-             e.held_out_row_px, c.held_out_z_m, 1000 * c.held_out_shape_m);
-  fmt::print("focal length            {:.1f} +- {:.1f} px and {:.1f} +- {:.1f} px\n", (rig.left.fx_px + rig.left.fy_px) / 2,
-             u.left_focal_px, (rig.right.fx_px + rig.right.fy_px) / 2, u.right_focal_px);
-  fmt::print("baseline                {:.2f} +- {:.2f} mm; pan +- {:.3f}, tilt +- {:.3f}, roll +- {:.3f} degrees\n",
-             1000 * rig.baseline_m(), 1000 * u.baseline_m, u.pan_rad * kDegrees, u.tilt_rad * kDegrees, u.roll_rad * kDegrees);
-  fmt::print(
-      "depth expected to be    +- {:.1f} mm at 1 m, {:.1f} mm at 1.5 m, {:.1f} mm at 2 m (one sigma; squares of exactly {:g} "
-      "mm)\n",
-      1000 * u.depth_m[0], 1000 * u.depth_m[1], 1000 * u.depth_m[2], *options.square_mm);
-  fmt::print("both cameras see        {:.0f} degrees, {:.0f} % of the left picture at 2 m\n", description.common_degrees,
-             100 * description.common_share);
-  fmt::print("for depth from {} m     --max-disparity {}\n", description.near_m, description.max_disparity);
-  fmt::print("a quarter pixel is      {:.1f} mm at 1 m, {:.1f} mm at 2 m, {:.1f} mm at 3 m\n", 1000 * description.step_m[0],
-             1000 * description.step_m[1], 1000 * description.step_m[2]);
-  fmt::print("written to              {}; report with plots: {}\n", options.output, report_path(options).string());
 }
 
 /// The pair that shows the most of the board of those that calibrate: near, so that a wrong rig would be seen.
@@ -151,13 +60,46 @@ class ShownPair {
   double width_px_ = 0;
 };
 
+constexpr double kGuessedBaseline_m = 0.1;  // of a rig that is not metric
+
+Result<std::optional<Rig>> read_lenses(const Options& options) {
+  if (options.intrinsics.empty()) return std::optional<Rig>{};
+  DUO_TRY_ASSIGN(Rig rig, load_rig(options.intrinsics));
+  if (!rig.metric)
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("the lenses of '{}' are a guess (it is not metric); give a rig of a board", options.intrinsics)};
+  return std::optional<Rig>{std::move(rig)};
+}
+
+/// Writes the rig and prints what the scene says of it; one that the scene itself calls useless is not written.
 Result<Exit> from_scene(const Options& options, const CLI::App& app) {
-  FromSceneOptions all = options.from_scene;
-  all.left = options.left;
-  all.right = options.right;
-  all.output = options.output;
-  all.json = options.json;
-  return run_from_scene(all, app);
+  const bool prints = may_print(options.output, options.json);
+  DUO_TRY_ASSIGN(const std::optional<Rig> lenses, read_lenses(options));
+  DUO_TRY_ASSIGN(const auto pairs, open_pairs(options.input.left, options.input.right, options.input.wish()));
+  const double baseline_m = options.baseline_m ? *options.baseline_m : lenses ? lenses->baseline_m() : kGuessedBaseline_m;
+  DUO_TRY_ASSIGN(SceneRig found, rig_from_scene(lenses, baseline_m, *pairs, 1));
+  if (found.after.verdict == RigVerdict::kRecalibrate)
+    return Error{
+        ErrorCode::kBadInput,
+        fmt::format("no rig fits this scene: its rows stay {:.2f} px off{}; show a scene with texture at several distances, "
+                    "or calibrate with a board",
+                    found.after.row_px, lenses ? ", so the intrinsics may belong to other cameras" : "")};
+  if (Interrupt::asked()) return stopped("the rig was written");
+  found.rig.date = date_now();
+  DUO_TRY(save_rig(found.rig, options.output));
+  if (options.json) {
+    print_json({{"rig", nlohmann::json::parse(json_of(found.rig))},
+                {"scene", nlohmann::json::parse(json_of(found.after))},
+                {"file", options.output}});
+  } else if (prints) {
+    fmt::print("rig      {}\n{}verdict  {}; written to {}\n", text_of(found.rig), text_of(found.after),
+               name_of(found.after.verdict), options.output);
+  }
+  if (!found.rig.metric)
+    say(app, "warning: without --intrinsics the rig is not metric: rows agree and nearer is nearer, but distances are a guess");
+  if (!found.after.missing.empty()) say(app, "warning: no points in " + found.after.missing + "; move the rig and try again");
+  if (!pairs->warning().empty()) say(app, "warning: " + pairs->warning());
+  return found.after.cut ? Exit::kCut : Exit::kOk;
 }
 
 Result<Exit> run(Options options, const CLI::App& app) {
@@ -167,7 +109,7 @@ Result<Exit> run(Options options, const CLI::App& app) {
                                                       : largest_board(options.board, paper));
   const bool assumed = !options.square_mm;
   options.square_mm = 1000 * board.square_m;
-  DUO_TRY_ASSIGN(BoardPictures pictures, BoardPictures::open(options.left, options.right, options.from_scene.input.wish()));
+  DUO_TRY_ASSIGN(BoardPictures pictures, BoardPictures::open(options.input.left, options.input.right, options.input.wish()));
   std::unique_ptr<Calibrator> calibrator;
   Progress progress(app, pictures.count(), options.quiet);
   Pair pair;
@@ -181,7 +123,7 @@ Result<Exit> run(Options options, const CLI::App& app) {
     progress.frame(calibrator->pairs());
     if (Interrupt::asked()) return stopped("the rig was found");
   }
-  if (!calibrator) return Error{ErrorCode::kBadInput, fmt::format("cannot calibrate: {} has no pictures", options.left)};
+  if (!calibrator) return Error{ErrorCode::kBadInput, fmt::format("cannot calibrate: {} has no pictures", options.input.left)};
   DUO_TRY_ASSIGN(Calibration calibration, calibrator->solve());
   calibration.rig.left_name = options.left_name;
   calibration.rig.right_name = options.right_name;
@@ -195,12 +137,11 @@ Result<Exit> run(Options options, const CLI::App& app) {
   DUO_TRY(save_rig(calibration.rig, options.output));
   const auto report = report_path(options);
   if (!report.empty()) DUO_TRY(write_calibration_report(calibration, board, description, shown.pair(), report));
+  const CalibrationReport all{calibration, *calibrator, description, options.output, report.string(), *options.square_mm};
   if (options.json)
-    fmt::print(
-        "{}\n",
-        to_json(calibration, *calibrator, description, options).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", json_of(all));
   else if (prints)
-    print(calibration, *calibrator, description, options);
+    fmt::print("{}", text_of(all));
   for (const std::string& warning : calibration.warnings) say(app, "warning: " + warning);
   if (!pictures.warning().empty()) say(app, "warning: " + pictures.warning());
   return pictures.cut() ? Exit::kCut : Exit::kOk;
@@ -211,8 +152,8 @@ Result<Exit> run(Options options, const CLI::App& app) {
 Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("calibrate", "A rig from pictures of a board, or of any scene");
   const auto options = std::make_shared<Options>();
-  sub->add_option("LEFT", options->left, "Video or folder of pictures of the left camera")->required();
-  sub->add_option("RIGHT", options->right, "The same of the right camera");
+  sub->add_option("LEFT", options->input.left, "Video or folder of pictures of the left camera")->required();
+  sub->add_option("RIGHT", options->input.right, "The same of the right camera");
   sub->add_option("--board", options->board, "chessboard:9x6 (inner corners) or charuco:9x6 (squares)")->capture_default_str();
   sub->add_option("--square-mm", options->square_mm,
                   "Side of a square as you measure it on the print; without it what duoptic board prints on A4")
@@ -227,8 +168,14 @@ Command add(CLI::App& app) {
   sub->add_option("--right-name", options->right_name, "And the right one")->capture_default_str();
   sub->add_flag("--from-scene", options->no_board, "No board: the pose from points of any scene, in two pictures or videos")
       ->excludes("--board");
-  options->from_scene.input.add_to(*sub);
-  add_from_scene_options(*sub, options->from_scene);
+  options->input.add_to(*sub);
+  sub->add_option("--intrinsics", options->intrinsics,
+                  "With --from-scene: a rig file of the same cameras, of which only the lenses are used; without it the rig is "
+                  "not metric")
+      ->type_name("RIG");
+  sub->add_option("--baseline-m", options->baseline_m, "With --from-scene: from lens to lens; without it that of --intrinsics")
+      ->type_name("M")
+      ->check(within(0.01, 5.0));
   sub->add_flag("--json", options->json, "Print the result as JSON");
   sub->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
   sub->footer(kFooter);

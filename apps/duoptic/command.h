@@ -2,8 +2,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -36,7 +40,7 @@ struct EngineOptions {
   int threads;  // all that the machine has
   std::string matcher = "sgm", preset = "default";
   std::vector<std::string> set;  // NAME=VALUE
-  std::string denoise = "auto";
+  Denoise denoise = Denoise::kAuto;
   bool fill = false;
 
   EngineOptions();
@@ -51,6 +55,18 @@ struct EngineOptions {
 
 /// --size WxH, like 640x480; a usage error where it is none.
 CLI::Option* add_size_option(CLI::App& app, Size& size, const char* help);
+
+/// An option whose values are those of an enumeration, by their names in its order.
+template <class Enum, std::size_t N>
+CLI::Option* add_choice_option(CLI::App& app, const char* option, Enum& value, const std::array<std::string_view, N>& names,
+                               const char* help) {
+  const auto take = [&value, &names](const std::string& name) {
+    value = static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  return app.add_option_function<std::string>(option, take, help)
+      ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())))
+      ->default_str(std::string(names[static_cast<std::size_t>(value)]));
+}
 
 /// An option that gives a rectangle of the picture: X,Y,W,H; a usage error where it is none.
 CLI::Option* add_window_option(CLI::App& app, const char* name, const char* help, const std::function<void(Window)>& take);
@@ -70,6 +86,9 @@ bool may_print(const std::string& output, bool json);
 
 /// What a command ends with that a signal stops before it has a result.
 Error stopped(const std::string& before);
+
+/// On stdout, with a line's end. Names of files may be no UTF-8.
+void print_json(const nlohmann::json& json);
 
 /// Writes to stderr. A stderr that is closed or full changes nothing: fmt::print() would throw.
 void put_on_stderr(const std::string& text);

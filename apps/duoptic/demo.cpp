@@ -2,7 +2,7 @@
 // here, and pictures and videos to look at.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
 #include <memory>
 
 #include "command.h"
@@ -10,11 +10,12 @@
 #include "duoptic/interrupt.h"
 #include "duoptic/output_set.h"
 #include "duoptic/paint.h"
+#include "duoptic/reports.h"
 #include "duoptic/sink.h"
 #include "duoptic/synthetic.h"
+#include "duoptic/timing.h"
 #include "eval_clip.h"
 #include "progress.h"
-#include "timing.h"
 
 namespace duo::app::demo {
 namespace {
@@ -23,19 +24,6 @@ struct Options {
   std::string folder = "demo";
   EngineOptions engine;
 };
-
-/// Pictures side by side, top-aligned on black.
-Image<Rgb8> side_by_side(std::initializer_list<View<const Rgb8>> pictures) {
-  Size size;
-  for (const auto& p : pictures) size = {size.width + p.width(), std::max(size.height, p.height())};
-  Image<Rgb8> out(size);
-  int left = 0;
-  for (const auto& p : pictures) {
-    for (int y = 0; y < p.height(); ++y) std::copy_n(p.row(y), p.width(), out.row(y) + left);
-    left += p.width();
-  }
-  return out;
-}
 
 struct Run {
   std::unique_ptr<Engine> engine;
@@ -61,7 +49,7 @@ Result<Run> run_on(const SyntheticPair& input, bool with_rig, const EngineOption
       out.frame = out.engine->collect();
     }));
   runs.erase(runs.begin());  // warms caches
-  out.times = median(runs);
+  out.times = median_of(runs);
   return out;
 }
 
@@ -73,7 +61,7 @@ Result<void> write_pictures(const SyntheticPair& raw, const Run& run, const std:
   DUO_TRY(write_frame(*run.frame, run.engine->rectified(), {}, [&](const std::string& name) { return out / name; }));
   DUO_TRY(write_png(raw.pair.left.pixels, out / "left.png"));
   DUO_TRY(write_png(cloud, out / "cloud.png"));
-  DUO_TRY(write_png(side_by_side({raw.pair.left.pixels, disparity, cloud}), out / "demo.png"));
+  DUO_TRY(write_png(side_by_side(std::array<View<const Rgb8>, 3>{raw.pair.left.pixels, disparity, cloud}), out / "demo.png"));
   return out.publish(frame_file_names());
 }
 
@@ -127,7 +115,7 @@ Result<void> track_person(const Options& options, const CLI::App& app) {
       "\nThe whole person without a click against exact joints, mm; beside it the trackers of a clicked arm, ours and the "
       "thesis's of "
       "2010\n");
-  eval_clip::print(scores);
+  fmt::print("{}", text_of(scores));
   fmt::print(
       "\nLook at {0}/body.mp4 (joints and bones, depth, regions, hue) and {0}/arm.mp4, and how {0}/thesis.mp4 loses the arm.\n",
       options.folder);

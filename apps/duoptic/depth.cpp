@@ -10,19 +10,15 @@
 #include "duoptic/calibrate.h"
 #include "duoptic/frame_files.h"
 #include "duoptic/interrupt.h"
-#include "duoptic/output_set.h"
 #include "duoptic/pipeline.h"
+#include "duoptic/reports.h"
+#include "duoptic/timing.h"
 #include "input.h"
-#include "live_news.h"
 #include "progress.h"
-#include "rig_report.h"
-#include "timing.h"
-#include "within_far.h"
+#include "run_news.h"
 
 namespace duo::app::depth {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr char kFooter[] =
     "Writes into DIR: disparity.pfm (float px, +inf where unknown) and disparity.png (colours with a legend); with --rig also\n"
@@ -41,13 +37,13 @@ constexpr char kFooter[] =
     "  duoptic depth left.png right.png --window 200,120,160,160 -o out    only there, the same values, sooner";
 
 struct Options {
-  std::string left, right, rig, folder = "duoptic_out";
+  std::string folder = "duoptic_out";
   int max_disparity = Setup().max_disparity;
   InputOptions input;
   double near_m = 0;  // 0: max_disparity says how far to search
   double far_m = kNoFarLimit_m;
   std::vector<std::string> outputs;  // empty: all that there are, without confidence and depth-video
-  std::string axes = "opencv";
+  Axes axes = Axes::kOpencv;
   std::int64_t every = 1;
   std::string range;  // of frames; empty: all
   std::vector<Window> windows;
@@ -98,51 +94,10 @@ FrameFiles files_of(const Options& options) {
     }
   }
   if (options.confidence) files.outputs.push_back(FrameOutput::kConfidence);
-  if (const auto axes = axes_of(options.axes)) files.cloud.axes = *axes;
+  files.cloud.axes = options.axes;
   files.cloud.far_m = options.far_m;
   return files;
 }
-
-/// Errors  what was asked for needs a rig, or a video
-Result<void> check_outputs(const FrameFiles& files, const Options& options, const Pipeline& pipeline) {
-  for (const FrameOutput output : files.outputs) {
-    const std::string name(kFrameOutputNames[static_cast<std::size_t>(output)]);
-    const bool any_pair = output == FrameOutput::kDisparity || output == FrameOutput::kConfidence;
-    if (!options.outputs.empty() && !any_pair && !pipeline.rectified())
-      return Error{ErrorCode::kBadInput, fmt::format("cannot write {}: it needs a rig; give one with --rig", name)};
-    if (output == FrameOutput::kDepthVideo && pipeline.still())
-      return Error{ErrorCode::kBadInput, fmt::format("cannot write {} of one picture; take --outputs depth", name)};
-  }
-  return {};
-}
-
-/// The depth of all frames and the camera that it is of: both appear at the end.
-class DepthOfAll {
- public:
-  Result<void> write(const Pipeline& pipeline, const FrameFiles& files, const fs::path& folder) {
-    const TrackedFrame frame = pipeline.tracked();
-    if (!video_) {
-      auto out = OutputSet::open(folder);
-      if (!out) return out.error();
-      out_.emplace(std::move(*out));
-      DUO_TRY_ASSIGN(video_, DepthVideo::open(*out_ / "depth.mkv", frame.frame->depth_mm.size(), pipeline.header().frame_s));
-    }
-    return video_->write(near_depth(frame.frame->depth_mm, files.cloud.far_m), frame.t_s);
-  }
-  Result<void> finish(const Pipeline& pipeline, FrameFiles files, std::vector<std::string>& written) {
-    if (!video_) return {};
-    DUO_TRY(video_->finish());
-    files.outputs = {FrameOutput::kCamera};
-    DUO_TRY(write_frame(*pipeline.frame(), pipeline.rectified(), files, [&](const std::string& name) { return *out_ / name; }));
-    DUO_TRY(out_->publish());
-    for (std::string& path : out_->paths()) written.push_back(std::move(path));
-    return {};
-  }
-
- private:
-  std::optional<OutputSet> out_;
-  std::optional<DepthVideo> video_;  // after the folder that it is written into
-};
 
 /// Share of pixels with a disparity, 0 .. 1.
 double coverage(const Frame& frame) {
@@ -165,22 +120,20 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
   Summary summary;
   FrameFiles files = files_of(options);
   files.cloud.metric = pipeline.header().metric;
-  DUO_TRY(check_outputs(files, options, pipeline));
-  const bool in_one = files.has(FrameOutput::kDepthVideo), each = files.outputs.size() > (in_one ? 1 : 0);
+  DUO_TRY_ASSIGN(FrameFolder out, FrameFolder::open(options.folder, std::move(files), !options.outputs.empty(),
+                                                    pipeline.rectified(), pipeline.still(), pipeline.header().frame_s));
   const Range range = parse_range(options.range.empty() ? ":" : options.range);
   if (!options.range.empty() && (pipeline.live() || pipeline.still()))
     return Error{ErrorCode::kBadInput,
-                 fmt::format("cannot use --frames with {}: it is for the frames of videos", options.left)};
+                 fmt::format("cannot use --frames with {}: it is for the frames of videos", options.input.left)};
   bool beyond = false;  // the range
-  DepthOfAll depth_of_all;
-  WithinFar within_far(options.far_m);
+  FarWatch within_far(options.far_m);
   progress.expect(pipeline.count());
   if (pipeline.live()) Interrupt::is_the_end();
-  LiveNews live(app);
+  RunNews news(app);
   while (!Interrupt::asked()) {
     DUO_TRY_ASSIGN(summary.end, pipeline.next());
-    say_rig_news(app, pipeline);
-    live.see(pipeline);
+    news.see(pipeline);
     if (summary.end == Next::kNothing) continue;
     if (summary.end != Next::kNew) break;
     beyond = static_cast<std::int64_t>(pipeline.pair()->sequence) >= range.end;
@@ -191,23 +144,16 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
     within_far.see(pipeline.frame()->depth_mm);
 
     const std::uint64_t number = pipeline.pair()->sequence;
-    const fs::path folder =
-        pipeline.still() ? fs::path(options.folder) : fs::path(options.folder) / fmt::format("frame_{:06}", number);
-    if (pipeline.rig_fit()) files.disparity_sigma_px = pipeline.rig_fit()->disparity_sigma_px;
-    if (each) {
-      DUO_TRY_ASSIGN(OutputSet out, OutputSet::open(folder));
-      DUO_TRY(write_frame(*pipeline.frame(), pipeline.rectified(), files, [&](const std::string& name) { return out / name; }));
-      DUO_TRY(out.publish(frame_file_names()));
-      for (std::string& path : out.paths()) summary.files.push_back(std::move(path));
-    }
-    if (in_one) DUO_TRY(depth_of_all.write(pipeline, files, options.folder));
+    if (pipeline.rig_fit()) out.set_disparity_sigma_px(pipeline.rig_fit()->disparity_sigma_px);
+    DUO_TRY(out.write(pipeline.frame(), number, pipeline.tracked().t_s));
     progress.frame(static_cast<std::int64_t>(number) + 1);
   }
   if (summary.ms.empty() && !options.range.empty() && !beyond && summary.end == Next::kEnd)
     return Error{ErrorCode::kBadInput, fmt::format("cannot give frames {}: {} gives {} pair{}, numbered from 0", options.range,
-                                                   options.left, pipeline.read(), pipeline.read() == 1 ? "" : "s")};
+                                                   options.input.left, pipeline.read(), pipeline.read() == 1 ? "" : "s")};
   summary.far_warning = within_far.warning();
-  DUO_TRY(depth_of_all.finish(pipeline, files, summary.files));
+  DUO_TRY(out.finish());
+  summary.files = out.paths();
   return summary;
 }
 
@@ -228,32 +174,31 @@ std::string all_warnings(const Summary& summary, const Pipeline& pipeline) {
 
 void print(const Summary& summary, const Pipeline& pipeline, const Options& options) {
   const Setup& setup = pipeline.setup();
-  const double frames = static_cast<double>(summary.ms.size()), ms = median(summary.ms);
+  const double frames = static_cast<double>(summary.ms.size()), ms = median_of(summary.ms);
   const double percent = frames > 0 ? 100 * summary.coverage_sum / frames : 0;
   if (options.json) {
     const double sigma_px = pipeline.rig_fit() ? pipeline.rig_fit()->disparity_sigma_px : 0;
     const auto camera = pipeline.rectified()
                             ? nlohmann::json::parse(camera_json(*pipeline.rectified(), pipeline.header().metric, sigma_px))
                             : nullptr;
-    const nlohmann::json out = {{"frames", summary.ms.size()},
-                                {"pairs_read", pipeline.read()},
-                                {"width", setup.size.width},
-                                {"height", setup.size.height},
-                                {"engine", pipeline.header().engine},
-                                {"device", pipeline.header().device},
-                                {"threads", options.engine.threads},
-                                {"matcher", options.engine.matcher},
-                                {"preset", options.engine.preset},
-                                {"max_disparity_px", setup.max_disparity},
-                                {"median_ms", ms},
-                                {"coverage_percent", percent},
-                                {"rows", json_of(setup.rows)},
-                                {"rig_fit", to_json(pipeline.rig_fit())},
-                                {"camera", camera},
-                                {"cut", summary.end == Next::kCut},
-                                {"warning", all_warnings(summary, pipeline)},
-                                {"files", summary.files}};
-    fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    print_json({{"frames", summary.ms.size()},
+                {"pairs_read", pipeline.read()},
+                {"width", setup.size.width},
+                {"height", setup.size.height},
+                {"engine", pipeline.header().engine},
+                {"device", pipeline.header().device},
+                {"threads", options.engine.threads},
+                {"matcher", options.engine.matcher},
+                {"preset", options.engine.preset},
+                {"max_disparity_px", setup.max_disparity},
+                {"median_ms", ms},
+                {"coverage_percent", percent},
+                {"rows", json_of(setup.rows)},
+                {"rig_fit", nlohmann::json::parse(json_of(pipeline.rig_fit()))},
+                {"camera", camera},
+                {"cut", summary.end == Next::kCut},
+                {"warning", all_warnings(summary, pipeline)},
+                {"files", summary.files}});
   } else if (!options.quiet) {
     if (setup.rows)
       fmt::print(
@@ -275,7 +220,7 @@ void print(const Summary& summary, const Pipeline& pipeline, const Options& opti
 /// Of pairs that no rig rectifies: what their rows are off, where it matters. A live source cannot be read twice.
 Result<std::optional<RowOffsets>> rows_of(const Options& options, const Setup& setup, bool live) {
   if (setup.rig || options.keep_rows || live) return std::optional<RowOffsets>();
-  DUO_TRY_ASSIGN(const Input again, open_input(options.left, options.right, {}, options.input));
+  DUO_TRY_ASSIGN(const Input again, options.input.open());
   DUO_TRY_ASSIGN(const RowOffsets rows, find_row_offsets(*again.pairs, options.engine.threads));
   return rows.matter() ? std::optional(rows) : std::nullopt;
 }
@@ -288,10 +233,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
                       .every = options.every,
                       .check = options.check};
   Setup& frames = setup.frames = options.engine.setup();
-  if (!options.rig.empty()) {
-    DUO_TRY_ASSIGN(frames.rig, load_rig(options.rig));
-  }
-  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, frames.rig, options.input));
+  DUO_TRY_ASSIGN(Input input, options.input.open());
   frames.rig = input.rig;
   if (options.near_m > 0 && !frames.rig) throw CLI::RequiredError("--rig");
   frames.max_disparity = options.max_disparity;
@@ -321,11 +263,11 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("depth", "Disparity, depth and points of pictures or videos");
   const auto options = std::make_shared<Options>();
-  sub->add_option("LEFT", options->left, "Picture or video of the left camera, a recording, or one file with both views")
+  sub->add_option("LEFT", options->input.left, "Picture or video of the left camera, a recording, or one file with both views")
       ->required();
-  sub->add_option("RIGHT", options->right, "Picture or video of the right camera");
+  sub->add_option("RIGHT", options->input.right, "Picture or video of the right camera");
   sub->add_option(
-      "--rig", options->rig,
+      "--rig", options->input.rig,
       "Calibration (our JSON, OpenCV's YAML or JSON); without it, and in no recording that has one, the pair is taken "
       "as rectified");
   options->input.add_to(*sub);
@@ -346,9 +288,7 @@ Command add(CLI::App& app) {
       ->delimiter(',')
       ->check(CLI::IsMember(std::vector<std::string>(kFrameOutputNames.begin(), kFrameOutputNames.end())))
       ->type_name("KINDS");
-  sub->add_option("--axes", options->axes, "Coordinate system of cloud.ply, see docs/formats.md")
-      ->check(CLI::IsMember(std::vector<std::string>(kAxesNames.begin(), kAxesNames.end())))
-      ->capture_default_str();
+  add_choice_option(*sub, "--axes", options->axes, kAxesNames, "Coordinate system of cloud.ply, see docs/formats.md");
   sub->add_option("-o,--output", options->folder, "Folder for the results")->type_name("DIR")->capture_default_str();
   sub->add_option("--every", options->every, "Of a video, only every N-th frame")
       ->type_name("N")

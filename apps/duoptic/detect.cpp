@@ -2,15 +2,14 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
 #include "command.h"
-#include "duoptic/detector.h"
 #include "duoptic/interrupt.h"
 #include "duoptic/output_set.h"
 #include "duoptic/paint.h"
+#include "duoptic/reports.h"
 #include "duoptic/sink.h"
 #include "duoptic/source.h"
 #include "progress.h"
@@ -33,50 +32,15 @@ constexpr char kFooter[] =
     "  duoptic detect wave.avi --hands -o out";
 
 struct Options {
-  std::string input, folder, model = "full", engine = "simd";
+  std::string input, folder, engine = "simd";
+  BodyModel model = BodyModel::kFull;
   int threads = static_cast<int>(std::thread::hardware_concurrency());
   bool hands = false, json = false, quiet = false;
 };
 
-const std::vector<std::pair<std::string, BodyModel>> kModels = {
-    {"lite", BodyModel::kLite}, {"full", BodyModel::kFull}, {"heavy", BodyModel::kHeavy}};
-
-/// Hundredths: what lies below is noise of the picture.
-double rounded(double value, double steps) { return std::round(value * steps) / steps; }
-
-nlohmann::ordered_json json_of(const SeenHand& hand) {
-  nlohmann::ordered_json points;
-  for (std::size_t i = 0; i < kHandPoints; ++i)
-    points[std::string(hand_point_name(i))] = {rounded(hand.points[i].x_px(), 100), rounded(hand.points[i].y_px(), 100)};
-  return {{"score", rounded(hand.score_q15 / 32768.0, 1e4)}, {"points", points}};
-}
-
-nlohmann::ordered_json json_of(const SeenPerson& person) {
-  nlohmann::ordered_json points;
-  for (std::size_t i = 0; i < kBodyPoints; ++i) {
-    const SeenPoint& point = person.body.points[i];
-    points[std::string(name_of(static_cast<BodyPoint>(i)))] = {rounded(point.x_px(), 100), rounded(point.y_px(), 100),
-                                                               rounded(point.visibility(), 1e4)};
-  }
-  const Window& box = person.box_px;
-  nlohmann::ordered_json out = {{"box_px", {box.x, box.y, box.width, box.height}},
-                                {"score", rounded(person.body.score_q15 / 32768.0, 1e4)},
-                                {"points", points}};
-  if (person.left_hand) out["hands"]["left"] = json_of(*person.left_hand);
-  if (person.right_hand) out["hands"]["right"] = json_of(*person.right_hand);
-  return out;
-}
-
-std::string line_of(std::span<const SeenPerson> people) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const SeenPerson& person : people) all.push_back(json_of(person));
-  return nlohmann::ordered_json{{"people", all}}.dump();
-}
-
 Result<Exit> run(const Options& options, const CLI::App& app) {
   DetectorOptions wish;
-  for (const auto& [name, model] : kModels)
-    if (name == options.model) wish.body = model;
+  wish.body = options.model;
   wish.hands = options.hands;
   wish.plain = options.engine == "ref";
   if (options.engine.starts_with("vulkan"))
@@ -99,7 +63,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
     const auto people = source->still() ? finder.look(picture.pixels) : finder.follow(picture.pixels);
     with_people += !people.empty();
     most = std::max(most, people.size());
-    if (options.json) fmt::print("{}\n", line_of(people));
+    if (options.json) fmt::print("{}\n", json_of(people));
     if (!options.folder.empty()) {
       draw_people(people, picture.pixels);
       DUO_TRY_ASSIGN(OutputSet out, OutputSet::open(options.folder));
@@ -128,11 +92,8 @@ Command add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   sub->add_option("INPUT", options->input, "A picture, a video, a camera or a stream")->required();
   sub->add_option("-o,--output", options->folder, "Write what was found over the pictures into a folder")->type_name("DIR");
-  std::vector<std::string> models;
-  for (const auto& [name, model] : kModels) models.push_back(name);
-  sub->add_option("--model", options->model, "How large a network: lite, full, or heavy, which is made on demand")
-      ->check(CLI::IsMember(models))
-      ->capture_default_str();
+  add_choice_option(*sub, "--model", options->model, kBodyModelNames,
+                    "How large a network: lite, full, or heavy, which is made on demand");
   sub->add_flag("--hands", options->hands, "Find the points of hands, too");
   sub->add_option("--engine", options->engine,
                   "ref: plain loops, slow; simd: the processor's vectors; vulkan[:DEVICE]; the same results")

@@ -17,7 +17,4 @@ Command add(CLI::App& eval);
 /// Errors  those of TrackingOptions::setup()
 Result<PipelineSetup> setup_of(const TrackingOptions& tracking, const std::filesystem::path& clip, const Rig& rig);
 
-/// The table of scores, with its heading.
-void print(const std::vector<ClipScore>& scores);
-
 }  // namespace duo::app::eval_clip

@@ -32,6 +32,10 @@ Exit exit_of(const Error& error) {
   return Exit::kUnexpected;
 }
 
+void print_json(const nlohmann::json& json) {
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
 void put_on_stderr(const std::string& text) { std::fputs(text.c_str(), stderr); }
 
 Error stopped(const std::string& before) {

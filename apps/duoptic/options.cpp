@@ -14,9 +14,7 @@
 namespace duo::app {
 namespace {
 
-const std::vector<std::pair<std::string, Denoise>> kDenoise = {
-    {"auto", Denoise::kAuto},         {"none", Denoise::kNone}, {"median", Denoise::kMedian},
-    {"gaussian", Denoise::kGaussian}, {"both", Denoise::kBoth}, {"diffusion", Denoise::kDiffusion}};
+constexpr std::array<std::string_view, 6> kDenoiseNames = {"auto", "none", "median", "gaussian", "both", "diffusion"};
 
 CLI::Validator known_engine() {
   return {[](std::string& name) {
@@ -61,8 +59,6 @@ std::string matcher_with(const std::string& preset, const std::string& otherwise
 EngineOptions::EngineOptions() : threads(std::max(1, static_cast<int>(std::thread::hardware_concurrency()))) {}
 
 void EngineOptions::add_to(CLI::App& app) {
-  std::vector<std::string> denoise_names;
-  for (const auto& [name, value] : kDenoise) denoise_names.push_back(name);
   app.add_option("--engine", engine,
                  "auto: the graphics card if there is one, else simd; ref: plain loops, slow; simd: the CPU's vectors; vulkan: "
                  "the graphics card, "
@@ -78,9 +74,8 @@ void EngineOptions::add_to(CLI::App& app) {
   app.add_option("--preset", preset, preset_help())->capture_default_str();
   app.add_option("--set", set, "Overrides one parameter of the preset; may be repeated; --help-all lists them")
       ->type_name("NAME=VALUE");
-  app.add_option("--denoise", denoise, "Before rectification; auto: gaussian for raw pictures, none for rectified ones")
-      ->check(CLI::IsMember(denoise_names))
-      ->capture_default_str();
+  add_choice_option(app, "--denoise", denoise, kDenoiseNames,
+                    "Before rectification; auto: gaussian for raw pictures, none for rectified ones");
   app.add_flag("--fill", fill, "Fill holes: flat walls by their plane, all else by the surface behind");
   app.parse_complete_callback([this, method] {
     if (method->count() == 0) matcher = matcher_with(preset, matcher);
@@ -110,8 +105,7 @@ Setup EngineOptions::setup() const {
   setup.preset = preset;
   for (const std::string& text : set) setup.parameters.push_back(parse_parameter(text));
   setup.fill = fill;
-  for (const auto& [name, value] : kDenoise)
-    if (name == denoise) setup.denoise = value;
+  setup.denoise = denoise;
   return setup;
 }
 

@@ -2,13 +2,10 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "command.h"
 #include "duoptic/output_set.h"
-#include "duoptic/recording.h"
-#include "duoptic/rig.h"
-#include "rig_report.h"
+#include "duoptic/reports.h"
 
 namespace duo::app::play {
 namespace {
@@ -28,41 +25,6 @@ struct Options {
   bool json = false;
 };
 
-double rate(const RecordingReport& r) { return r.length_s > 0 ? static_cast<double>(r.pairs - 1) / r.length_s : 0; }
-
-nlohmann::json to_json(const RecordedView& view) {
-  return {{"codec", view.codec}, {"pictures", view.pictures}, {"missing", view.missing}};
-}
-
-void print(const RecordingReport& r, const Options& options, const std::vector<std::string>& files) {
-  if (options.json) {
-    const nlohmann::json out = {{"file", options.recording},
-                                {"left", to_json(r.left)},
-                                {"right", to_json(r.right)},
-                                {"width", r.size.width},
-                                {"height", r.size.height},
-                                {"pairs", r.pairs},
-                                {"length_s", r.length_s},
-                                {"rate_hz", rate(r)},
-                                {"longest_gap_s", r.longest_gap_s},
-                                {"skew_s", r.skew_s},
-                                {"bytes", r.bytes},
-                                {"rig", r.rig ? app::to_json(*r.rig) : nlohmann::json()},
-                                {"date", r.date},
-                                {"cut", r.cut},
-                                {"files", files}};
-    fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-    return;
-  }
-  fmt::print("tracks   left {}, right {}, {}x{}\n", r.left.codec, r.right.codec, r.size.width, r.size.height);
-  fmt::print("length   {} pairs in {:.2f} s, {:.2f} a second, longest gap {:.0f} ms, {:.1f} MB{}\n", r.pairs, r.length_s,
-             rate(r), 1e3 * r.longest_gap_s, static_cast<double>(r.bytes) * 1e-6, r.date.empty() ? "" : ", taken " + r.date);
-  fmt::print("drops    {} left and {} right pictures were taken and are not in it\n", r.left.missing, r.right.missing);
-  fmt::print("skew     {:.1f} ms at most between the pictures of a pair\n", 1e3 * r.skew_s);
-  fmt::print("rig      {}\n", r.rig ? describe(*r.rig) : "none; give --rig to the commands that need one");
-  if (!files.empty()) fmt::print("written  {}\n", fmt::join(files, ", "));
-}
-
 Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(const RecordingReport report, inspect_recording(options.recording));
   std::vector<std::string> files;
@@ -73,7 +35,8 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
     DUO_TRY(out.publish());
     files = out.paths();
   }
-  print(report, options, files);
+  fmt::print("{}", options.json ? json_of(report, options.recording, files) + "\n" : text_of(report));
+  if (!options.json && !files.empty()) fmt::print("written  {}\n", fmt::join(files, ", "));
   if (report.cut)
     say(app, fmt::format("warning: {} was killed or cut; its {} whole pairs are good", options.recording, report.pairs));
   return report.cut ? Exit::kCut : Exit::kOk;

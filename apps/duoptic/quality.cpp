@@ -2,18 +2,16 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "command.h"
 #include "duoptic/calibrate.h"
-#include "duoptic/depth_quality.h"
 #include "duoptic/interrupt.h"
 #include "duoptic/pipeline.h"
+#include "duoptic/reports.h"
 #include "input.h"
-#include "live_news.h"
 #include "progress.h"
-#include "rig_report.h"
+#include "run_news.h"
 
 namespace duo::app::quality {
 namespace {
@@ -30,7 +28,6 @@ constexpr char kFooter[] =
     "  duoptic quality left.avi right.avi --rig rig.json --region 200,150,240,180 --json";
 
 struct Options {
-  std::string left, right, rig;
   std::optional<double> distance_m;
   std::optional<Window> region;
   int frames = 40;
@@ -41,46 +38,11 @@ struct Options {
   EngineOptions engine;
 };
 
-void print(const DepthQuality& q, Window region, const Pipeline& pipeline, const Options& options) {
-  const bool metric = pipeline.header().metric;
-  if (options.json) {
-    nlohmann::json out = {{"frames", q.frames},
-                          {"region", {region.x, region.y, region.width, region.height}},
-                          {"metric", metric},
-                          {"fill_rate_percent", q.fill_rate_percent},
-                          {"distance_m", q.distance_m},
-                          {"angle_deg", q.angle_deg},
-                          {"plane_fit_rms_mm", q.plane_fit_rms_mm},
-                          {"subpixel_rms_px", q.subpixel_rms_px},
-                          {"temporal_noise_mm", nullptr},
-                          {"temporal_noise_percent", nullptr},
-                          {"z_error_mm", nullptr},
-                          {"z_accuracy_percent", nullptr},
-                          {"rig_fit", to_json(pipeline.rig_fit())}};
-    if (q.frames > 1) out["temporal_noise_mm"] = q.temporal_noise_mm, out["temporal_noise_percent"] = q.temporal_noise_percent;
-    if (q.z_error_mm) out["z_error_mm"] = *q.z_error_mm, out["z_accuracy_percent"] = *q.z_accuracy_percent;
-    fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-    return;
-  }
-  const char *m = metric ? "m" : "units", *mm = metric ? "mm" : "thousandths";
-  fmt::print("region          {}x{} px at {},{}, {} frame{}\n", region.width, region.height, region.x, region.y, q.frames,
-             q.frames == 1 ? "" : "s");
-  fmt::print("wall            {:.3f} {} away, turned by {:.1f} degrees\n", q.distance_m, m, q.angle_deg);
-  fmt::print("fill rate       {:.1f} %\n", q.fill_rate_percent);
-  fmt::print("plane-fit RMS   {:.2f} {}\n", q.plane_fit_rms_mm, mm);
-  fmt::print("sub-pixel RMS   {:.3f} px\n", q.subpixel_rms_px);
-  if (q.frames > 1) fmt::print("temporal noise  {:.2f} {} = {:.3f} %\n", q.temporal_noise_mm, mm, q.temporal_noise_percent);
-  if (q.z_error_mm) fmt::print("z error         {:+.1f} {} = {:+.2f} %\n", *q.z_error_mm, mm, *q.z_accuracy_percent);
-}
-
 Result<Exit> run(const Options& options, const CLI::App& app) {
   Interrupt::end_at_once();
   PipelineSetup setup{.engine = options.engine.engine, .threads = options.engine.threads, .check = options.check};
   setup.frames = options.engine.setup();
-  if (!options.rig.empty()) {
-    DUO_TRY_ASSIGN(setup.frames.rig, load_rig(options.rig));
-  }
-  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, setup.frames.rig, options.input));
+  DUO_TRY_ASSIGN(Input input, options.input.open());
   setup.frames.rig = input.rig;
   if (!input.rig) throw CLI::RequiredError("--rig");
   DUO_TRY_ASSIGN(setup.frames.max_disparity, disparities_from(*input.rig, options.near_m));
@@ -94,20 +56,23 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
                              rectified.size.width, rectified.size.height)};
   DepthQualityMeter meter(rectified, region, options.distance_m);
   Progress progress(app, options.frames, options.json);
-  LiveNews live(app);
+  RunNews news(app);
   int frames = 0;
   Next next = Next::kNew;
   while (frames < options.frames) {
     DUO_TRY_ASSIGN(next, pipeline.next());
-    say_rig_news(app, pipeline);
-    live.see(pipeline);
+    news.see(pipeline);
     if (next == Next::kNothing) continue;
     if (next != Next::kNew) break;
     DUO_TRY(meter.add(*pipeline.frame()));
     progress.frame(++frames);
   }
-  if (frames == 0) return Error{ErrorCode::kBadInput, fmt::format("cannot measure depth: {} gave no frame", options.left)};
-  print(meter.quality(), region, pipeline, options);
+  if (frames == 0)
+    return Error{ErrorCode::kBadInput, fmt::format("cannot measure depth: {} gave no frame", options.input.left)};
+  const bool metric = pipeline.header().metric;
+  const DepthQuality quality = meter.quality();
+  fmt::print("{}",
+             options.json ? json_of(quality, region, metric, pipeline.rig_fit()) + "\n" : text_of(quality, region, metric));
   if (const std::string warning = pipeline.warning(); !pipeline.live() && !warning.empty()) say(app, "warning: " + warning);
   return next == Next::kCut ? Exit::kCut : Exit::kOk;
 }
@@ -117,9 +82,9 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("quality", "How good depth is, measured on a flat wall");
   const auto options = std::make_shared<Options>();
-  sub->add_option("LEFT", options->left, "Picture, video, recording or camera, the left one or both in one")->required();
-  sub->add_option("RIGHT", options->right, "The same of the right camera");
-  sub->add_option("--rig", options->rig, "Calibration; a recording may bring its own")->type_name("FILE");
+  sub->add_option("LEFT", options->input.left, "Picture, video, recording or camera, the left one or both in one")->required();
+  sub->add_option("RIGHT", options->input.right, "The same of the right camera");
+  sub->add_option("--rig", options->input.rig, "Calibration; a recording may bring its own")->type_name("FILE");
   sub->add_option("--distance-m", options->distance_m, "From the left lens to the wall, at a right angle to it")
       ->type_name("M")
       ->check(above_zero());

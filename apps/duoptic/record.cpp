@@ -2,15 +2,14 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "duoptic/interrupt.h"
 #include "duoptic/pipeline.h"
+#include "duoptic/reports.h"
+#include "duoptic/timing.h"
 #include "input.h"
-#include "live_news.h"
 #include "progress.h"
-#include "rig_report.h"
-#include "timing.h"
+#include "run_news.h"
 
 namespace duo::app::record {
 namespace {
@@ -27,7 +26,7 @@ constexpr char kFooter[] =
     "  duoptic track clip.mkv --select hand=.. --select elbow=.. --select shoulder=..";
 
 struct Options {
-  std::string left, right, output, rig;
+  std::string output;
   InputOptions input;
   double seconds = 0;  // 0: to the end, or until Ctrl-C
   RigCheck check = RigCheck::kTell;
@@ -41,12 +40,11 @@ Result<Next> record_all(Pipeline& pipeline, const Options& options, const CLI::A
   const bool by_clock = pipeline.live() && options.seconds > 0;
   constexpr double kGrace_ms = 300;  // the last pairs are on their way
   Progress progress(app, pipeline.count(), options.quiet);
-  LiveNews live(app);
+  RunNews news(app);
   Next next = Next::kNew;
   while (!Interrupt::asked() && pipeline.recording().on && next != Next::kEnd && next != Next::kCut) {
     DUO_TRY_ASSIGN(next, pipeline.next());
-    say_rig_news(app, pipeline);
-    live.see(pipeline);
+    news.see(pipeline);
     progress.frame(pipeline.recording().pairs);
     if (by_clock && clock_ms(CLOCK_MONOTONIC) - start_ms >= options.seconds * 1000 + kGrace_ms) break;
   }
@@ -59,12 +57,18 @@ void print(const Pipeline& pipeline, const Options& options, Next end, bool rig)
   const RecordingStatus done = pipeline.recording();
   const Size size = pipeline.setup().size;
   if (options.json) {
-    const nlohmann::json out = {
-        {"file", options.output},   {"pairs", done.pairs},           {"width", size.width},
-        {"height", size.height},    {"length_s", done.length_s},     {"bytes", done.bytes},
-        {"codecs", done.codecs},    {"dropped", done.dropped},       {"rig", rig},
-        {"cut", end == Next::kCut}, {"warning", pipeline.warning()}, {"rig_fit", to_json(pipeline.rig_fit())}};
-    fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    print_json({{"file", options.output},
+                {"pairs", done.pairs},
+                {"width", size.width},
+                {"height", size.height},
+                {"length_s", done.length_s},
+                {"bytes", done.bytes},
+                {"codecs", done.codecs},
+                {"dropped", done.dropped},
+                {"rig", rig},
+                {"cut", end == Next::kCut},
+                {"warning", pipeline.warning()},
+                {"rig_fit", nlohmann::json::parse(json_of(pipeline.rig_fit()))}});
   } else if (!options.quiet) {
     fmt::print("{}: {} pair{} of {}x{} in {:.1f} s, {}, {:.1f} MB, {} rig{}\n", options.output, done.pairs,
                done.pairs == 1 ? "" : "s", size.width, size.height, done.length_s, done.codecs,
@@ -75,10 +79,7 @@ void print(const Pipeline& pipeline, const Options& options, Next end, bool rig)
 
 Result<Exit> run(const Options& options, const CLI::App& app) {
   RecorderSetup setup;
-  if (!options.rig.empty()) {
-    DUO_TRY_ASSIGN(setup.rig, load_rig(options.rig));
-  }
-  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, setup.rig, options.input));
+  DUO_TRY_ASSIGN(Input input, options.input.open());
   setup.rig = input.rig;
   setup.frame_s = input.pairs->frame_s();
   setup.replace = options.force;
@@ -89,7 +90,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   DUO_TRY(pipeline.record(options.output, setup, options.seconds));
   DUO_TRY_ASSIGN(const Next end, record_all(pipeline, options, app));
   if (pipeline.recording().pairs == 0)
-    return Error{ErrorCode::kBadInput, fmt::format("nothing recorded: {} gave no pair; no file was made", options.left)};
+    return Error{ErrorCode::kBadInput, fmt::format("nothing recorded: {} gave no pair; no file was made", options.input.left)};
   print(pipeline, options, end, setup.rig.has_value());
   if (const std::string warning = pipeline.warning(); !pipeline.live() && !warning.empty()) say(app, "warning: " + warning);
   return end == Next::kCut ? Exit::kCut : Exit::kOk;
@@ -100,10 +101,11 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
 Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("record", "Two cameras into one file that players open, with capture times and rig");
   const auto options = std::make_shared<Options>();
-  sub->add_option("LEFT", options->left, "Left camera or video, or what gives both views")->required();
-  sub->add_option("RIGHT", options->right, "Right camera or video");
+  sub->add_option("LEFT", options->input.left, "Left camera or video, or what gives both views")->required();
+  sub->add_option("RIGHT", options->input.right, "Right camera or video");
   sub->add_option("-o,--output", options->output, "The recording, NAME.mkv")->type_name("FILE")->required();
-  sub->add_option("--rig", options->rig, "Calibration to keep in the recording; else the source's own")->type_name("FILE");
+  sub->add_option("--rig", options->input.rig, "Calibration to keep in the recording; else the source's own")
+      ->type_name("FILE");
   options->input.add_to(*sub);
   sub->add_option("--seconds", options->seconds, "How long; without it to the end, or until Ctrl-C")
       ->type_name("S")

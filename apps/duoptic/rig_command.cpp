@@ -8,10 +8,9 @@
 
 #include "command.h"
 #include "duoptic/interrupt.h"
+#include "duoptic/reports.h"
 #include "duoptic/rig_files.h"
-#include "duoptic/rig_health.h"
 #include "input.h"
-#include "rig_report.h"
 
 namespace duo::app::rig {
 namespace {
@@ -60,9 +59,7 @@ struct Options {
   bool json = false;
 };
 
-void print_json(const nlohmann::json& json) {
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-}
+nlohmann::json parsed(const std::string& report) { return nlohmann::json::parse(report); }
 
 Result<Exit> check(const Options& options, const CLI::App& app) {
   Interrupt::end_at_once();
@@ -76,14 +73,14 @@ Result<Exit> check(const Options& options, const CLI::App& app) {
   }
   const RigVerdict verdict = overall(doubts, scene ? &*scene : nullptr);
   if (options.json) {
-    nlohmann::json out = {{"verdict", name_of(verdict)}, {"rig", to_json(rig)}, {"doubts", nlohmann::json::array()}};
+    nlohmann::json out = {{"verdict", name_of(verdict)}, {"rig", parsed(json_of(rig))}, {"doubts", nlohmann::json::array()}};
     for (const RigDoubt& doubt : doubts) out["doubts"].push_back({{"verdict", name_of(doubt.verdict)}, {"what", doubt.what}});
-    out["scene"] = scene ? to_json(*scene) : nlohmann::json();
+    out["scene"] = scene ? parsed(json_of(*scene)) : nlohmann::json();
     print_json(out);
   } else {
-    fmt::print("rig      {}\n", describe(rig));
+    fmt::print("rig      {}\n", text_of(rig));
     for (const RigDoubt& doubt : doubts) fmt::print("doubt    {}\n", doubt.what);
-    fmt::print("{}verdict  {}{}\n", scene ? describe(*scene) : "", name_of(verdict),
+    fmt::print("{}verdict  {}{}\n", scene ? text_of(*scene) : "", name_of(verdict),
                scene ? "" : " as far as its numbers tell; give pictures to see whether it still fits the cameras");
   }
   if (verdict == RigVerdict::kRecalibrate) return Exit::kInput;
@@ -101,13 +98,13 @@ Result<Exit> refine(const Options& options, const CLI::App& app) {
   if (useful && !options.output.empty()) DUO_TRY(save_rig(found.rig, options.output));
   if (options.json) {
     print_json({{"verdict", name_of(found.after.verdict)},
-                {"before", to_json(found.before)},
-                {"after", to_json(found.after)},
-                {"rig", to_json(found.rig)},
+                {"before", parsed(json_of(found.before))},
+                {"after", parsed(json_of(found.after))},
+                {"rig", parsed(json_of(found.rig))},
                 {"file", useful ? nlohmann::json(options.output) : nlohmann::json()}});
   } else if (prints) {
-    fmt::print("before   {}\n{}after    {}\n{}", name_of(found.before.verdict), describe(found.before),
-               name_of(found.after.verdict), describe(found.after));
+    fmt::print("before   {}\n{}after    {}\n{}", name_of(found.before.verdict), text_of(found.before),
+               name_of(found.after.verdict), text_of(found.after));
     if (useful) fmt::print("{}\n", options.output.empty() ? "nothing written (no -o)" : "written to " + options.output);
   }
   if (!pairs->warning().empty()) say(app, "warning: " + pairs->warning());
@@ -130,9 +127,9 @@ Result<Exit> import_file(const Options& options, const CLI::App& app) {
   DUO_TRY_ASSIGN(const RigImport read, import_rig(options.left, options.right, options.size));
   DUO_TRY(save_rig(read.rig, options.output));
   if (options.json)
-    print_json({{"rig", to_json(read.rig)}, {"file", options.output}, {"note", read.note}});
+    print_json({{"rig", parsed(json_of(read.rig))}, {"file", options.output}, {"note", read.note}});
   else if (prints)
-    fmt::print("{}: {}\n", options.output, describe(read.rig));
+    fmt::print("{}: {}\n", options.output, text_of(read.rig));
   if (!read.note.empty()) say(app, "note: " + read.note);
   for (const RigDoubt& doubt : rig_doubts(read.rig)) say(app, "warning: " + doubt.what);
   return Exit::kOk;

@@ -6,11 +6,10 @@
 
 #include "duoptic/interrupt.h"
 #include "duoptic/skew_watch.h"
-#include "live_news.h"
+#include "duoptic/timing.h"
 #include "progress.h"
-#include "rig_report.h"
+#include "run_news.h"
 #include "sink_options.h"
-#include "timing.h"
 #include "tracking_options.h"
 
 namespace duo::app::track {
@@ -40,7 +39,7 @@ constexpr char kFooter[] =
     "  duoptic track camera:0 camera:2 --rig rig.json --select ... --record clip.mkv -o clip.jsonl   both pictures and arm";
 
 struct Options {
-  std::string left, right, rig, record;
+  std::string record;
   std::vector<std::string> select;
   std::string arm_side = "right";
   std::int64_t at_frame = 0;
@@ -55,10 +54,11 @@ struct Options {
 /// Says what happens to live cameras, to the engine, and to the recording.
 class Events {
  public:
-  explicit Events(const CLI::App& app) : app_(app), live_(app) {}
-  void see(const Pipeline& pipeline) { live_.see(pipeline); }
-  void happened(const std::string& event) {
-    if (!event.empty()) say(app_, "warning: " + event);
+  explicit Events(const CLI::App& app) : app_(app), news_(app) {}
+  void see(const Pipeline& pipeline, Next next) {
+    news_.see(pipeline);
+    if (next != Next::kNew) return;
+    if (const std::string event = pipeline.event(); !event.empty()) say(app_, "warning: " + event);
   }
   void look_at(const Pipeline& pipeline) {
     const auto failure = recording_failed_ ? std::nullopt : pipeline.recording_failure();
@@ -69,7 +69,7 @@ class Events {
 
  private:
   const CLI::App& app_;
-  LiveNews live_;
+  RunNews news_;
   bool recording_failed_ = false;
 };
 
@@ -78,9 +78,7 @@ Result<Next> next_frame(Pipeline& pipeline, Events& events) {
   while (true) {
     if (Interrupt::asked()) return Next::kEnd;
     DUO_TRY_ASSIGN(const Next next, pipeline.next());
-    events.see(pipeline);
-    if (next == Next::kNew) events.happened(pipeline.event());
-    events.happened(pipeline.rig_news());
+    events.see(pipeline, next);
     if (next != Next::kNothing) return next;
   }
 }
@@ -108,8 +106,10 @@ struct Summary {
 Result<Summary> track_all(Pipeline& pipeline, Events& events, std::span<const Selection> selections, const Options& options,
                           const CLI::App& app) {
   if (!selections.empty()) DUO_TRY(pipeline.select(selections));
-  DUO_TRY(options.sinks.add_sinks(pipeline, app));
-  if (options.sinks.lines_on_stdout()) DUO_TRY(options.sinks.add_sink(pipeline, sink_kinds().front(), ""));
+  const bool lines_on_stdout = options.sinks.lines_on_stdout();
+  DUO_TRY_ASSIGN(const auto notes, options.sinks.add_all_to(pipeline));
+  for (const std::string& note : notes) say(app, "warning: " + note);
+  if (lines_on_stdout) DUO_TRY(options.sinks.add_to(pipeline, sink_kinds().front(), ""));
   Summary summary;
   Progress progress(app, pipeline.count(), options.quiet);
   SkewWatch skew(pipeline.header().rectified.baseline_m);
@@ -135,12 +135,12 @@ Result<Summary> track_all(Pipeline& pipeline, Events& events, std::span<const Se
 std::string text_of(const Summary& summary, double seconds, const Pipeline& pipeline, const Options& options) {
   const std::size_t frames = summary.frames;
   const std::string dropped =
-      pipeline.live() ? fmt::format(", {} dropped, latency {:.1f} ms", pipeline.dropped(), median(summary.latency_ms))
+      pipeline.live() ? fmt::format(", {} dropped, latency {:.1f} ms", pipeline.dropped(), median_of(summary.latency_ms))
                       : std::string();
   return fmt::format(
       "{} frame{} of {}x{} in {:.1f} s = {:.1f} frames/s{}; engine {:.1f} ms, tracker {:.1f} ms ({}, {}, {} thread{}){}",
       frames, frames == 1 ? "" : "s", pipeline.header().size.width, pipeline.header().size.height, seconds,
-      static_cast<double>(frames) / seconds, dropped, median(summary.engine_ms), median(summary.tracker_ms),
+      static_cast<double>(frames) / seconds, dropped, median_of(summary.engine_ms), median_of(summary.tracker_ms),
       pipeline.header().engine, pipeline.header().tracker, options.tracking.engine.threads,
       options.tracking.engine.threads == 1 ? "" : "s", dropped_text(pipeline));
 }
@@ -155,11 +155,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
                                 tracker->name()));
   const auto selections = parse_selections(options.select, options.arm_side, tracker->skeletons());
   if (!selections) throw CLI::ValidationError("--select", selections.error().what);
-  std::optional<Rig> rig;
-  if (!options.rig.empty()) {
-    DUO_TRY_ASSIGN(rig, load_rig(options.rig));
-  }
-  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, rig, options.input));
+  DUO_TRY_ASSIGN(Input input, options.input.open());
   if (!input.rig) throw CLI::RequiredError("--rig");  // most sources do not bring their own
   if (options.realtime && !input.pairs->live()) input.pairs = in_real_time(std::move(input.pairs));
   if (options.budget_percent > 0 && !input.pairs->live())
@@ -182,7 +178,7 @@ Result<Exit> run(const Options& options, const CLI::App& app) {
   if (!options.record.empty()) DUO_TRY(pipeline.record(options.record, to_record));
   if (pipeline.live()) Interrupt::is_the_end();
   Events events(app);
-  DUO_TRY(first_frame(pipeline, events, options.at_frame, options.left));
+  DUO_TRY(first_frame(pipeline, events, options.at_frame, options.input.left));
   Result<Summary> summary = Summary{};
   const Times times = timed([&] { summary = track_all(pipeline, events, *selections, options, app); });
   pipeline.stop_recording();
@@ -203,12 +199,12 @@ Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand(
       "track", "People in 3D through two videos or live; or an arm, from a click on hand, elbow and shoulder");
   const auto options = std::make_shared<Options>();
-  sub->add_option("LEFT", options->left,
+  sub->add_option("LEFT", options->input.left,
                   "Video of the left camera, or the camera itself (camera:0, /dev/video0, http://, rtsp://, gst:);\nalone: a "
                   "recording, one file with both views, or the synthetic person")
       ->required();
-  sub->add_option("RIGHT", options->right, "The same of the right camera");
-  sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); a recording may bring its own");
+  sub->add_option("RIGHT", options->input.right, "The same of the right camera");
+  sub->add_option("--rig", options->input.rig, "Calibration (our JSON, OpenCV's YAML or JSON); a recording may bring its own");
   sub->add_option(
          "--select", options->select,
          "Follow an arm instead: where hand, elbow and shoulder are, once for each; of both arms with their sides, left_hand")

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "duoptic/calibrate.h"
@@ -13,7 +12,7 @@ void TrackingOptions::add_to(CLI::App& app) {
   app.add_option(
          "--max-disparity", max_disparity,
          fmt::format("Searches disparities of 0 .. N-1 px; without it, down to a distance of {} m, with N of {} at most",
-                     kNearest_m, kMostDisparities))
+                     kNearestPeople_m, kMostPeopleDisparities))
       ->type_name("N")
       ->check(within(1, Engine::kMaxDisparity));
   app.add_option(
@@ -21,9 +20,8 @@ void TrackingOptions::add_to(CLI::App& app) {
          "body: whole people, without clicks; body_hands: the same with their fingers; arm: hand, elbow and shoulder that are\n"
          "clicked, also while they are hidden; thesis: the method of 2010")
       ->check(CLI::IsMember(tracker_names()));
-  app.add_option("--model", model, "The network of bodies of the tracker body: lite, full or heavy (see duoptic detect)")
-      ->check(CLI::IsMember({"lite", "full", "heavy"}))
-      ->capture_default_str();
+  add_choice_option(app, "--model", model, kBodyModelNames,
+                    "The network of bodies of the tracker body: lite, full or heavy (see duoptic detect)");
   app.add_flag(
       "--hands", hands,
       "Fingers, too: 20 joints more of each hand, and how far the tips of thumb and index finger are apart. Looks for\n"
@@ -59,12 +57,11 @@ Result<PipelineSetup> TrackingOptions::setup(const Input& input) const {
   if (max_disparity > 0) {
     out.frames.max_disparity = max_disparity;
   } else if (input.rig) {
-    DUO_TRY_ASSIGN(const int from_nearest, disparities_from(*input.rig, kNearest_m));
-    out.frames.max_disparity = std::min(from_nearest, kMostDisparities);
+    DUO_TRY_ASSIGN(out.frames.max_disparity, disparities_for_people(*input.rig));
   }
   out.tracker = tracker;
   out.focus = focus;
-  out.body_model = model == "heavy" ? BodyModel::kHeavy : model == "full" ? BodyModel::kFull : BodyModel::kLite;
+  out.body_model = model;
   return out;
 }
 

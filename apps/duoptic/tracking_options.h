@@ -10,13 +10,10 @@
 namespace duo::app {
 
 struct TrackingOptions {
-  static constexpr double kNearest_m = 0.5;
-  static constexpr int kMostDisparities = 256;  // of every matcher: a large picture starts at a greater depth
-
   EngineOptions engine;
-  std::string tracker;         // empty: the command's own
-  std::string model = "full";  // of a tracker with networks
-  int max_disparity = 0;       // 0: what something at kNearest_m has
+  std::string tracker;                 // empty: the command's own
+  BodyModel model = BodyModel::kFull;  // of a tracker with networks
+  int max_disparity = 0;               // 0: disparities_for_people()
   PeopleFocus focus = PeopleFocus::kOff;
   bool hands = false;     // fingers, too: the tracker body_hands for body
   bool all_maps = false;  // frames are drawn or scored, not only tracked
@@ -26,7 +23,7 @@ struct TrackingOptions {
   /// With a tracker where none was chosen, and its fingers where they are wanted. Throws CLI::ValidationError where the
   /// tracker has none.
   TrackingOptions or_tracker(const char* name) const;
-  /// Errors  those of disparities_from()
+  /// Errors  those of every rig
   Result<PipelineSetup> setup(const Input& input) const;
 };
 

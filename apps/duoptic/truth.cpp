@@ -2,15 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "duoptic/interrupt.h"
-#include "duoptic/output_set.h"
-#include "duoptic/sink.h"
-#include "duoptic/structured_light.h"
+#include "duoptic/reports.h"
 #include "input.h"
 #include "progress.h"
 #ifdef DUO_VIEWER
@@ -55,7 +51,13 @@ constexpr char kDecodeFooter[] =
     "  duoptic truth decode recorded --rig rig.json -o desk\n"
     "  duoptic truth decode recorded dim --rig rig.json --light left.png --light right.png -o desk --json";
 
-constexpr const char* kCodeFile = "patterns.json";
+/// Up to a signal.
+LightProgress counted(Progress& progress) {
+  return [&progress](std::size_t done) {
+    progress.frame(static_cast<std::int64_t>(done));
+    return !Interrupt::asked();
+  };
+}
 
 struct ShownOptions {
   LightCode code;
@@ -79,44 +81,21 @@ struct ShownOptions {
   }
 };
 
-Result<void> write_code(const LightCode& code, OutputSet& out) {
-  const fs::path path = out / kCodeFile;
-  std::ofstream file(path, std::ios::binary);
-  if ((file << json_from_light_code(code)).flush()) return {};
-  return Error{ErrorCode::kWriteFailed, fmt::format("cannot write {}", kCodeFile)};
-}
-
-nlohmann::json to_json(const LightCode& code, const std::string& folder) {
-  return {{"folder", folder},
-          {"patterns", light_patterns(code).size()},
-          {"screen", {code.screen.width, code.screen.height}},
-          {"period_px", code.period_px}};
-}
-
 Result<Exit> write_patterns(const ShownOptions& options, const CLI::App& app) {
   DUO_TRY(check_light_code(options.code));
-  const auto patterns = light_patterns(options.code);
-  DUO_TRY_ASSIGN(OutputSet out, OutputSet::open(options.folder));
+  const auto count = light_patterns(options.code).size();
   {
-    Progress progress(app, static_cast<std::int64_t>(patterns.size()), options.quiet);
-    for (std::size_t i = 0; i < patterns.size(); ++i) {
-      if (Interrupt::asked()) return stopped("all patterns were drawn");
-      DUO_TRY(write_png(draw_pattern(options.code, patterns[i], options.white()), out / fmt::format("pattern_{:03}.png", i)));
-      progress.frame(static_cast<std::int64_t>(i) + 1);
-    }
+    Progress progress(app, static_cast<std::int64_t>(count), options.quiet);
+    DUO_TRY(write_light_patterns(options.code, options.white(), options.folder, counted(progress)));
   }
-  DUO_TRY(write_code(options.code, out));
-  DUO_TRY(out.publish());
   if (options.json)
-    fmt::print("{}\n", to_json(options.code, options.folder).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", json_of(options.code, options.folder));
   else if (!options.quiet)
-    fmt::print("{}: {} patterns of {}x{}\n", options.folder, patterns.size(), options.code.screen.width,
-               options.code.screen.height);
+    fmt::print("{}: {} patterns of {}x{}\n", options.folder, count, options.code.screen.width, options.code.screen.height);
   return Exit::kOk;
 }
 
 struct RecordOptions : ShownOptions {
-  std::string left, right, rig;
   InputOptions input;
   LightRecording how;
   int display = 0;
@@ -124,32 +103,20 @@ struct RecordOptions : ShownOptions {
 
 #ifdef DUO_VIEWER
 Result<Exit> record(RecordOptions options, const CLI::App& app) {
-  std::optional<Rig> rig;
-  if (!options.rig.empty()) {
-    DUO_TRY_ASSIGN(rig, load_rig(options.rig));
-  }
-  DUO_TRY_ASSIGN(Input input, open_input(options.left, options.right, rig, options.input));
+  DUO_TRY_ASSIGN(Input input, options.input.open());
   if (!input.pairs->live())
     return Error{ErrorCode::kBadInput,
                  fmt::format("cannot record patterns from {}: files do not see the screen; give two cameras, "
                              "or decode pictures that were taken of the patterns",
-                             options.left)};
+                             options.input.left)};
   DUO_TRY_ASSIGN(view::PatternScreen shown, view::open_pattern_screen(options.display));
   options.code.screen = shown.size;
   options.how.white = options.white();
   const auto count = static_cast<std::int64_t>(light_patterns(options.code).size());
-  DUO_TRY_ASSIGN(OutputSet out, OutputSet::open(options.folder));
   Progress progress(app, count, options.quiet);
-  DUO_TRY(record_light(*input.pairs, options.code, options.how, *shown.screen,
-                       [&](std::size_t pattern, const Pair& pair) -> Result<void> {
-                         progress.frame(static_cast<std::int64_t>(pattern) + 1);
-                         DUO_TRY(write_png(pair.left.pixels, out / light_file_name(true, pattern)));
-                         return write_png(pair.right.pixels, out / light_file_name(false, pattern));
-                       }));
-  DUO_TRY(write_code(options.code, out));
-  DUO_TRY(out.publish());
+  DUO_TRY(record_light_folder(*input.pairs, options.code, options.how, *shown.screen, options.folder, counted(progress)));
   if (options.json)
-    fmt::print("{}\n", to_json(options.code, options.folder).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", json_of(options.code, options.folder));
   else if (!options.quiet)
     fmt::print("{}: {} patterns of {}x{}, recorded by both cameras; duoptic truth decode {} makes the scene\n", options.folder,
                count, options.code.screen.width, options.code.screen.height, options.folder);
@@ -172,108 +139,25 @@ struct DecodeOptions {
   bool quiet = false, json = false;
 };
 
-double share_percent(std::int64_t part, std::int64_t all) {
-  return 100.0 * static_cast<double>(part) / static_cast<double>(std::max<std::int64_t>(all, 1));
-}
-
-nlohmann::json to_json(const LightCounts& c) {
-  return {{"pixels", c.pixels},
-          {"known_percent", share_percent(c.known, c.pixels)},
-          {"unlit_percent", share_percent(c.unlit, c.pixels)},
-          {"saturated_percent", share_percent(c.saturated, c.pixels)},
-          {"uncertain_percent", share_percent(c.uncertain, c.pixels)}};
-}
-
-Result<Picture> load_one(const std::string& path) {
-  DUO_TRY_ASSIGN(const auto source, open_source(path));
-  Picture picture;
-  DUO_TRY_ASSIGN(const Next next, source->next(picture));
-  if (next == Next::kNew) return picture;
-  return Error{ErrorCode::kBadInput, fmt::format("cannot use {}: it has no picture", path)};
-}
-
-/// Dark rooms are best for patterns, but leave matchers nothing to see.
-bool is_dark(const Image<Rgb8>& picture) {
-  constexpr double kDark = 25;
-  double sum = 0;
-  for (int y = 0; y < picture.height(); ++y)
-    for (int x = 0; x < picture.width(); ++x) sum += picture.at(y, x).g;
-  return sum < kDark * picture.width() * picture.height();
-}
-
-void print(const LightTruth& truth, std::size_t patterns, const DecodeOptions& options) {
-  const Size size = truth.disparity_px.size();
-  const double covered = share_percent(truth.matched, truth.inside);
-  if (options.json) {
-    const nlohmann::json out = {{"scene", options.output},
-                                {"width", size.width},
-                                {"height", size.height},
-                                {"patterns", patterns},
-                                {"exposures", options.folders.size()},
-                                {"disparities", truth.matched},
-                                {"coverage_percent", covered},
-                                {"contradicting", truth.contradicting},
-                                {"rows_px", truth.rows_px},
-                                {"left", to_json(truth.left)},
-                                {"right", to_json(truth.right)}};
-    fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-    return;
-  }
-  if (options.quiet) return;
-  for (const auto& [name, c] : {std::pair{"left", truth.left}, {"right", truth.right}})
-    fmt::print("{:<6} {:5.1f} % lit and told apart, {:.1f} % too dark, {:.1f} % too bright, {:.1f} % in doubt\n", name,
-               share_percent(c.known, c.pixels), share_percent(c.unlit, c.pixels), share_percent(c.saturated, c.pixels),
-               share_percent(c.uncertain, c.pixels));
-  fmt::print("truth  {:5.1f} % of the left picture; rows disagree by {:.2f} px at the median; {}x{}, written to {}\n", covered,
-             truth.rows_px, size.width, size.height, options.output);
-}
-
 Result<Exit> decode(const DecodeOptions& options, const CLI::App& app) {
   if (!options.light.empty() && options.light.size() != 2)
     throw CLI::ValidationError("--light", "give it twice: the left picture, then the right one");
-  std::optional<Rig> rig;
+  LightFolders what{.folders = options.folders, .light = options.light, .threads = options.threads};
   if (!options.rig.empty()) {
-    DUO_TRY_ASSIGN(rig, load_rig(options.rig));
+    DUO_TRY_ASSIGN(what.rig, load_rig(options.rig));
   }
-  const fs::path code_path = options.patterns.empty() ? fs::path(options.folders[0]) / kCodeFile : fs::path(options.patterns);
-  DUO_TRY_ASSIGN(const LightCode code, load_light_code(code_path));
-  std::vector<LightFiles> files;
-  for (const std::string& folder : options.folders) {
-    DUO_TRY_ASSIGN(const auto found, find_light_files(folder, code));
-    files.insert(files.end(), found.begin(), found.end());
-  }
-  std::optional<LightDecoder> decoder;
-  Pair pair;
-  {
-    Progress progress(app, static_cast<std::int64_t>(files.size()), options.quiet);
-    for (std::size_t i = 0; i < files.size(); ++i) {
-      if (Interrupt::asked()) return stopped("all pictures were decoded");
-      DUO_TRY_ASSIGN(pair.left, load_one(files[i].left));
-      DUO_TRY_ASSIGN(pair.right, load_one(files[i].right));
-      if (!decoder) {
-        DUO_TRY_ASSIGN(decoder, LightDecoder::open(code, rig, pair.left.pixels.size(), options.threads));
-      }
-      if (const auto added = decoder->add(pair); !added)
-        return Error{added.error().code, fmt::format("{}: {}", files[i].left.parent_path().string(), added.error().what)};
-      progress.frame(static_cast<std::int64_t>(i) + 1);
-    }
-  }
-  const bool other_light = !options.light.empty();
-  if (other_light) {
-    DUO_TRY_ASSIGN(pair.left, load_one(options.light[0]));
-    DUO_TRY_ASSIGN(pair.right, load_one(options.light[1]));
-  }
-  DUO_TRY_ASSIGN(const LightTruth truth, decoder->truth(other_light ? &pair : nullptr));
+  DUO_TRY_ASSIGN(const LightCode code, load_light_code(options.patterns.empty() ? fs::path(options.folders[0]) / kLightCodeFile
+                                                                                : fs::path(options.patterns)));
+  const std::size_t patterns = light_patterns(code).size();
+  Progress progress(app, static_cast<std::int64_t>(patterns * options.folders.size()), options.quiet);
+  DUO_TRY_ASSIGN(const LightTruth truth, decode_light_folders(code, what, counted(progress)));
+  progress.end();
   DUO_TRY(write_scene(truth, options.output));
-  print(truth, light_patterns(code).size(), options);
-  constexpr double kRowsMatter_px = 0.3;
-  if (std::abs(truth.rows_px) > kRowsMatter_px)
-    say(app,
-        fmt::format("warning: the right view shows everything {:.2f} px {} than the left one: the rig does not fit; correct it "
-                    "by duoptic rig refine, then decode again",
-                    std::abs(truth.rows_px), truth.rows_px > 0 ? "lower" : "higher"));
-  if (is_dark(truth.pair.left.pixels))
-    say(app, "warning: left.png is dark, as the room was; give pictures of the same scene in ordinary light by --light");
+  if (options.json)
+    fmt::print("{}\n", json_of(truth, patterns, options.folders.size(), options.output));
+  else if (!options.quiet)
+    fmt::print("{}", text_of(truth, options.output));
+  for (const std::string& warning : warnings_of(truth)) say(app, "warning: " + warning);
   return Exit::kOk;
 }
 
@@ -292,9 +176,9 @@ Command add(CLI::App& app) {
 
   const auto recording = std::make_shared<RecordOptions>();
   CLI::App* record_app = sub->add_subcommand("record", "Shows all patterns on a display and records both cameras");
-  record_app->add_option("LEFT", recording->left, "Left camera, or what gives both views")->required();
-  record_app->add_option("RIGHT", recording->right, "Right camera");
-  record_app->add_option("--rig", recording->rig, "Asks the cameras for pictures of its size")->type_name("FILE");
+  record_app->add_option("LEFT", recording->input.left, "Left camera, or what gives both views")->required();
+  record_app->add_option("RIGHT", recording->input.right, "Right camera");
+  record_app->add_option("--rig", recording->input.rig, "Asks the cameras for pictures of its size")->type_name("FILE");
   recording->input.add_to(*record_app);
   record_app->add_option("--display", recording->display, "The projector among the displays, counted from 0")
       ->type_name("N")

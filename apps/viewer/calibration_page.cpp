@@ -34,18 +34,18 @@ void set_text(std::array<char, N>& field, const std::string& text) {
 
 }  // namespace
 
-CalibrationPage::CalibrationPage(Window& window, std::unique_ptr<Calibrating> calibrating, const Board& board, bool can_swap)
-    : window_(window), calibrating_(std::move(calibrating)), square_mm_(1000 * board.square_m), can_swap_(can_swap) {
+CalibrationPage::CalibrationPage(Window& window, std::unique_ptr<CalibrationSession> session, const Board& board, bool can_swap)
+    : window_(window), session_(std::move(session)), square_mm_(1000 * board.square_m), can_swap_(can_swap) {
   set_text(board_, board.name());
   set_text(file_, free_rig_name());
 }
 
-Result<CalibrationEnd> CalibrationPage::run(Window& window, CalibratingOptions options, std::unique_ptr<PairSource> pairs) {
+Result<CalibrationEnd> CalibrationPage::run(Window& window, CalibrationSessionSetup setup, std::unique_ptr<PairSource> pairs,
+                                            bool can_swap) {
   DUO_TRY_ASSIGN(const Paper paper, parse_paper("a4"));
   DUO_TRY_ASSIGN(const Board board, largest_board("chessboard:9x6", paper));
-  const bool two_sources = !options.right.empty();
-  DUO_TRY_ASSIGN(auto calibrating, Calibrating::start(std::move(options), std::move(pairs), board));
-  CalibrationPage page(window, std::move(calibrating), board, two_sources);
+  DUO_TRY_ASSIGN(auto session, CalibrationSession::start(std::move(setup), std::move(pairs), board));
+  CalibrationPage page(window, std::move(session), board, can_swap);
   DUO_TRY(page.show());
   return page.end_;
 }
@@ -54,7 +54,7 @@ Result<void> CalibrationPage::show() {
   while (!window_.closing() && !Interrupt::asked() && !left_) {
     Window::wait(ImGui::IsAnyMouseDown() ? 0.01 : 0.1);
     if (!window_.begin()) continue;
-    status_ = calibrating_->status();
+    status_ = session_->status();
     DUO_TRY(draw());
     window_.end();
     if (const std::string said = window_.write_screenshot(); !said.empty()) note_ = said;
@@ -150,7 +150,7 @@ void CalibrationPage::draw_board(std::size_t side, const Fit& fit) const {
       if (status_.covered[side][static_cast<std::size_t>(y * kAcross + x)])
         list.AddRectFilled(place(static_cast<double>(x) / kAcross, static_cast<double>(y) / kDown),
                            place((x + 1.0) / kAcross, (y + 1.0) / kDown), kCovered);
-  const bool looking = status_.state == CalibratingState::kLooking;
+  const bool looking = status_.state == SessionState::kLooking;
   const auto ninth = looking && status_.look.wish ? ninth_of(*status_.look.wish) : std::nullopt;
   if (ninth) {
     const ImVec2 a = place((*ninth)[0] / 3.0, (*ninth)[1] / 3.0), b = place(((*ninth)[0] + 1) / 3.0, ((*ninth)[1] + 1) / 3.0);
@@ -168,12 +168,12 @@ void CalibrationPage::draw_board(std::size_t side, const Fit& fit) const {
 /// What to do now, in large letters, and how far it is.
 void CalibrationPage::put_words() {
   const GuideLook& look = status_.look;
-  const bool solved = status_.state == CalibratingState::kSolved, ended = status_.state == CalibratingState::kEnded;
-  const std::string words = solved                                        ? "The rig is found"
-                            : status_.state == CalibratingState::kSolving ? "Calibrating ..."
-                            : ended                                       ? "No more pictures"
-                            : status_.pair                                ? look.words
-                                                                          : "Waiting for pictures";
+  const bool solved = status_.state == SessionState::kSolved, ended = status_.state == SessionState::kEnded;
+  const std::string words = solved                                    ? "The rig is found"
+                            : status_.state == SessionState::kSolving ? "Calibrating ..."
+                            : ended                                   ? "No more pictures"
+                            : status_.pair                            ? look.words
+                                                                      : "Waiting for pictures";
   ImGui::SetWindowFontScale(ImGui::GetIO().DisplaySize.x > 900 * window_.scale() ? 1.7f : 1.3f);
   put_text(solved || look.step == GuideStep::kTaken ? kBox : kAccent, words, title_font());
   ImGui::SetWindowFontScale(1);
@@ -232,7 +232,7 @@ void CalibrationPage::put_result() {
 
 void CalibrationPage::put_ways_on() {
   const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
-  if (status_.state == CalibratingState::kSolved) {
+  if (status_.state == SessionState::kSolved) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("save as");
     ImGui::SameLine(70 * window_.scale());
@@ -241,15 +241,15 @@ void CalibrationPage::put_ways_on() {
     ImGui::PushStyleColor(ImGuiCol_Button, IM_COL32(36, 92, 150, 255));
     if (ImGui::Button("Save and track (Enter)", {-1, 0})) save();
     ImGui::PopStyleColor();
-    if (calibrating_->live()) {
-      if (ImGui::Button("More views", {half, 0})) calibrating_->go_on();
+    if (session_->live()) {
+      if (ImGui::Button("More views", {half, 0})) session_->go_on();
       ImGui::SameLine();
     }
-  } else if (status_.views >= CalibrationGuide::kFewestViews && status_.state == CalibratingState::kLooking) {
-    if (ImGui::Button("Calibrate now (Enter)", {-1, 0})) calibrating_->solve();
+  } else if (status_.views >= CalibrationGuide::kFewestViews && status_.state == SessionState::kLooking) {
+    if (ImGui::Button("Calibrate now (Enter)", {-1, 0})) session_->solve();
   }
   if (can_swap_ && ImGui::Button("Swap left and right", {-1, 0})) left_ = end_.swapped = true;
-  if (ImGui::Button("Start again", {half, 0})) calibrating_->choose(calibrating_->board());
+  if (ImGui::Button("Start again", {half, 0})) session_->choose(session_->board());
   ImGui::SameLine();
   if (ImGui::Button("Leave", {half, 0})) left_ = true;
 }
@@ -259,9 +259,9 @@ void CalibrationPage::put_board() {
   const auto choose = [this] {
     const auto board = parse_board(board_.data(), square_mm_ / 1000);
     problem_ = board ? "" : board.error().what;
-    if (board) calibrating_->choose(*board);
+    if (board) session_->choose(*board);
   };
-  const Board now = calibrating_->board();
+  const Board now = session_->board();
   if (!ImGui::IsAnyItemActive()) set_text(board_, now.name());  // what was recognised
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("board");
@@ -271,7 +271,7 @@ void CalibrationPage::put_board() {
   if (ImGui::IsItemDeactivatedAfterEdit()) choose();
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("chessboard:9x6 (inner corners) or charuco:9x6 (squares)");
   ImGui::SameLine();
-  if (ImGui::Button("Recognise", {-1, 0})) calibrating_->recognise();
+  if (ImGui::Button("Recognise", {-1, 0})) session_->recognise();
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("square");
   ImGui::SameLine(70 * window_.scale());
@@ -280,7 +280,7 @@ void CalibrationPage::put_board() {
   if (ImGui::IsItemDeactivatedAfterEdit()) {
     const auto board = parse_board(now.name(), square_mm_ / 1000);
     problem_ = board ? "" : board.error().what;
-    if (board) calibrating_->set_square_m(board->square_m);
+    if (board) session_->set_square_m(board->square_m);
   }
   ImGui::SameLine();
   ImGui::TextDisabled("as measured");
@@ -293,15 +293,15 @@ void CalibrationPage::take_keys() {
     if (key == GLFW_KEY_F12) window_.want_screenshot();
     if (key == GLFW_KEY_Q) left_ = true;
     if (key != GLFW_KEY_ENTER && key != GLFW_KEY_KP_ENTER) continue;
-    if (status_.state == CalibratingState::kSolved)
+    if (status_.state == SessionState::kSolved)
       save();
-    else if (status_.views >= CalibrationGuide::kFewestViews && status_.state == CalibratingState::kLooking)
-      calibrating_->solve();
+    else if (status_.views >= CalibrationGuide::kFewestViews && status_.state == SessionState::kLooking)
+      session_->solve();
   }
 }
 
 void CalibrationPage::save() {
-  const Result<void> saved = calibrating_->save(file_.data());
+  const Result<void> saved = session_->save(file_.data());
   problem_ = saved ? "" : saved.error().what;
   if (!saved) return;
   end_.rig = file_.data();
@@ -309,11 +309,11 @@ void CalibrationPage::save() {
 }
 
 void CalibrationPage::put_title() const {
-  const char* const doing = status_.state == CalibratingState::kSolved    ? "the rig is found"
-                            : status_.state == CalibratingState::kSolving ? "calibrating"
-                            : status_.state == CalibratingState::kEnded   ? "no more pictures"
-                            : status_.pair                                ? status_.look.words.c_str()
-                                                                          : "waiting for pictures";
+  const char* const doing = status_.state == SessionState::kSolved    ? "the rig is found"
+                            : status_.state == SessionState::kSolving ? "calibrating"
+                            : status_.state == SessionState::kEnded   ? "no more pictures"
+                            : status_.pair                            ? status_.look.words.c_str()
+                                                                      : "waiting for pictures";
   window_.set_title(fmt::format("duoptic view: {}", doing));
 }
 

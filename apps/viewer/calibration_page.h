@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "calibrating.h"
+#include "duoptic/calibration_session.h"
 #include "texture.h"
 #include "window.h"
 
@@ -24,11 +24,12 @@ class CalibrationPage {
  public:
   /// Until a rig was saved, the cameras are to be swapped, or the window is closed or the page left.
   ///
-  /// Errors  those of Calibrating::start() and of Texture::set()
-  static Result<CalibrationEnd> run(Window& window, CalibratingOptions options, std::unique_ptr<PairSource> pairs);
+  /// Errors  those of CalibrationSession::start() and of Texture::set()
+  static Result<CalibrationEnd> run(Window& window, CalibrationSessionSetup setup, std::unique_ptr<PairSource> pairs,
+                                    bool can_swap);
 
  private:
-  CalibrationPage(Window& window, std::unique_ptr<Calibrating> calibrating, const Board& board, bool can_swap);
+  CalibrationPage(Window& window, std::unique_ptr<CalibrationSession> session, const Board& board, bool can_swap);
   struct Fit {
     ImVec2 from, to;
   };
@@ -47,8 +48,8 @@ class CalibrationPage {
   void put_title() const;
 
   Window& window_;
-  std::unique_ptr<Calibrating> calibrating_;
-  CalibratingStatus status_;
+  std::unique_ptr<CalibrationSession> session_;
+  SessionStatus status_;
   std::array<Texture, 2> textures_;
   std::shared_ptr<const Pair> drawn_;  // in textures_
   std::optional<float> row_;           // that was clicked, share of the picture's height

@@ -9,16 +9,6 @@
 namespace duo::app::view {
 namespace {
 
-/// As wide as 12-bit colours need, a pixel high.
-Image<Rgb8> strip_of(DepthColors colors) {
-  constexpr int kSteps = 256;
-  Image<std::uint16_t> ramp({kSteps, 1});
-  for (int x = 0; x < kSteps; ++x) ramp.at(0, x) = static_cast<std::uint16_t>(x * 16);
-  Image<Rgb8> out(ramp.size());
-  color_disparity(ramp, {0, kSteps - 1.0}, out, colors);
-  return out;
-}
-
 bool same_colors(const ViewChoices& a, const ViewChoices& b) {
   return a.colors == b.colors && a.own_range == b.own_range && a.near_m == b.near_m && a.far_m == b.far_m;
 }
@@ -30,7 +20,7 @@ Result<void> Panels::paint_depth() {
   quality_.set_distance(choices_.wall_m);
   const bool chosen = !same_colors(choices_, painted_choices_);
   if (!shown_ || (!depth_stale_ && !chosen)) return {};
-  if (depth_strip_.size().empty() || chosen) DUO_TRY(depth_strip_.set(strip_of(choices_.colors)));
+  if (depth_strip_.size().empty() || chosen) DUO_TRY(depth_strip_.set(depth_strip(choices_.colors)));
   shown_range_ = range_;
   if (choices_.own_range)
     shown_range_ = {header_.rectified.disparity_px(choices_.far_m), header_.rectified.disparity_px(choices_.near_m)};
@@ -142,18 +132,8 @@ Result<void> Panels::draw_rectified_pair(const Cell& cell) {
     ImGui::GetWindowDrawList()->AddText(cell.from, kFaint, "the engine keeps them on its device");
     return {};
   }
-  const Size half = frame.left.size();
-  if (pair_stale_) {
-    Image<Rgb8> both({2 * half.width, half.height});
-    for (int y = 0; y < half.height; ++y)
-      for (int x = 0; x < half.width; ++x) {
-        const std::uint8_t l = frame.left.at(y, x), r = frame.right.at(y, x);
-        both.at(y, x) = {l, l, l};
-        both.at(y, half.width + x) = {r, r, r};
-      }
-    DUO_TRY(pair_.set(both));
-    pair_stale_ = false;
-  }
+  if (pair_stale_) DUO_TRY(pair_.set(draw_rectified(frame)));
+  pair_stale_ = false;
   const Fit fit = picture(cell, pair_);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   constexpr int kLines = 12;

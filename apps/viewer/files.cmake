@@ -1,14 +1,10 @@
 # The window of `duoptic view`: part of the tool, and the only code that sees GLFW, ImGui and OpenGL.
 set(dir ${PROJECT_SOURCE_DIR}/apps/viewer)
 target_sources(duoptic_tool PRIVATE
-  ${dir}/calibrating.cpp
   ${dir}/calibration_page.cpp
-  ${dir}/camera_search.cpp
   ${dir}/depth_panel.cpp
   ${dir}/panels.cpp
   ${dir}/pattern_screen.cpp
-  ${dir}/player.cpp
-  ${dir}/quality_region.cpp
   ${dir}/sidebar.cpp
   ${dir}/start.cpp
   ${dir}/style.cpp

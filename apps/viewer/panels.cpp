@@ -10,21 +10,6 @@ namespace {
 
 constexpr float kTitle = 28, kCaption = 34, kMargin = 8;  // heights above and below a picture, and around it
 
-/// The hues as draw_hue() shows them, from pixels that have them.
-Image<Rgb8> hue_strip() {
-  constexpr int kSteps = 6 * 32;
-  Image<Rgb8> pure({kSteps, 1}), out({kSteps, 1});
-  for (int x = 0; x < kSteps; ++x) {
-    const auto channel = [x](int shift) {
-      const int at = (x + shift + kSteps) % kSteps;  // trapezoid: up, high, high, down, low, low
-      return static_cast<std::uint8_t>(std::clamp(std::abs(at - kSteps / 2) - kSteps / 6, 0, kSteps / 6) * 255 / (kSteps / 6));
-    };
-    pure.at(0, x) = {channel(0), channel(-kSteps / 3), channel(kSteps / 3)};
-  }
-  draw_hue(pure, out);
-  return out;
-}
-
 ImVec2 inset(ImVec2 p, float d) { return {p.x + d, p.y + d}; }
 
 }  // namespace
@@ -36,16 +21,13 @@ Result<void> Panels::show(std::shared_ptr<const Shown> shown) {
   if (shows_ == 0) DUO_TRY(hue_strip_.set(hue_strip()));
   const Frame& frame = *shown->frame;
   const auto& d_q4 = frame.disparity.d_q4;
-  // Colours that mean the same from frame to frame: the range follows slowly, with room for an arm stretched out to the
-  // cameras.
-  constexpr int kEvery = 15;
-  constexpr double kNearer = 1.25, kFarther = 3, kFollow = 0.3;
+  constexpr int kEvery = 15;  // colours mean the same from frame to frame: the range follows slowly
+  constexpr double kFollow = 0.3, kNearer = 1.25;
   if (shows_++ % kEvery == 0)
-    if (const DisparityRange now = disparity_range(d_q4); !now.empty()) {
-      const DisparityRange wide = {std::max(now.far_px, now.near_px / kFarther), now.near_px * kNearer};
+    if (const DisparityRange now = roomy_range(d_q4, kNearer); !now.empty()) {
       const double follow = range_.empty() ? 1 : kFollow;
-      range_ = {range_.far_px + follow * (wide.far_px - range_.far_px),
-                range_.near_px + follow * (wide.near_px - range_.near_px)};
+      range_ = {range_.far_px + follow * (now.far_px - range_.far_px),
+                range_.near_px + follow * (now.near_px - range_.near_px)};
     }
   if (orbit_.middle_m <= 0 || shows_ == 1) orbit_.middle_m = std::max(0.3, foreground_m(d_q4, header_.rectified));
   DUO_TRY(camera_.set(shown->left->pixels));

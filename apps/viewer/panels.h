@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "duoptic/clicks.h"
+#include "duoptic/depth_quality.h"
 #include "duoptic/paint.h"
-#include "player.h"
-#include "quality_region.h"
+#include "duoptic/player.h"
 #include "style.h"
 #include "texture.h"
 
@@ -87,7 +87,7 @@ class Panels {
   int shows_ = 0;
   ViewChoices choices_, painted_choices_;
   std::optional<int> enlarged_;
-  QualityRegion quality_;
+  RegionQuality quality_;
   std::optional<ImVec2> drag_from_;     // in the depth picture, px
   DisparityRange range_, shown_range_;  // that follows the scene; that is drawn
   Orbit orbit_, drawn_orbit_;

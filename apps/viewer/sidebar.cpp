@@ -6,8 +6,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "duoptic/timing.h"
 #include "style.h"
-#include "timing.h"
 
 namespace duo::app::view {
 namespace {
@@ -33,14 +33,15 @@ const char* word_of(JointState state) {
 
 }  // namespace
 
-Result<Sidebar> Sidebar::make(const PlayerOptions& options, const Player& player, std::string device, float scale) {
+Result<Sidebar> Sidebar::make(std::string source, const EngineOptions& engine, const Player& player, std::string device,
+                              float scale) {
   Sidebar out;
   out.scale_ = scale;
   out.device_ = std::move(device);
-  out.matcher_ = options.tracking.engine.matcher;
-  out.source_ = fmt::format("{}{}{}", options.left, options.right.empty() ? "" : ", ", options.right);
-  DUO_TRY_ASSIGN(out.parameters_, matcher_parameters(options.tracking.engine.matcher, options.tracking.engine.preset));
-  const auto overrides = options.tracking.engine.setup().parameters;
+  out.matcher_ = engine.matcher;
+  out.source_ = std::move(source);
+  DUO_TRY_ASSIGN(out.parameters_, matcher_parameters(engine.matcher, engine.preset));
+  const auto overrides = engine.setup().parameters;
   for (const ParameterInfo& info : out.parameters_) {
     const auto given = std::find_if(overrides.begin(), overrides.end(), [&](const auto& o) { return o.first == info.name; });
     out.values_.push_back(static_cast<int>(given != overrides.end() ? given->second : info.value));
@@ -322,11 +323,11 @@ void Sidebar::put_speed() const {
   constexpr float kCameraFrame_ms = 1000.0f / 30;
   dashed_line(list, {from.x, y_of(kCameraFrame_ms)}, {to.x, y_of(kCameraFrame_ms)}, IM_COL32(255, 255, 255, 90), 1, 4 * scale_);
   list.AddText({from.x + 5 * scale_, y_of(kCameraFrame_ms) - 17 * scale_}, kFaint, "33 ms");
-  const double ms = median(interval);
-  ImGui::TextUnformatted(fmt::format("{:.1f} frames/s, {:.0f} ms latency", ms > 0 ? 1000 / ms : 0, median(latency)).c_str());
-  put_text(kEngine, fmt::format("engine {:.1f} ms", median(engine)));
+  const double ms = median_of(interval);
+  ImGui::TextUnformatted(fmt::format("{:.1f} frames/s, {:.0f} ms latency", ms > 0 ? 1000 / ms : 0, median_of(latency)).c_str());
+  put_text(kEngine, fmt::format("engine {:.1f} ms", median_of(engine)));
   ImGui::SameLine();
-  put_text(kTracker, fmt::format("tracker {:.1f} ms", median(tracker)));
+  put_text(kTracker, fmt::format("tracker {:.1f} ms", median_of(tracker)));
 }
 
 void Sidebar::put_parameters(Player& player) {

@@ -9,15 +9,17 @@
 
 #include "duoptic/clicks.h"
 #include "duoptic/engine.h"
+#include "duoptic/player.h"
 #include "panels.h"
-#include "player.h"
+#include "tracking_options.h"
 
 namespace duo::app::view {
 
 class Sidebar {
  public:
   /// Errors  the matcher's parameters are not known
-  static Result<Sidebar> make(const PlayerOptions& options, const Player& player, std::string device, float scale);
+  static Result<Sidebar> make(std::string source, const EngineOptions& engine, const Player& player, std::string device,
+                              float scale);
 
   /// For the plot.
   void add(const Shown& shown);

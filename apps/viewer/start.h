@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "camera_search.h"
+#include "duoptic/camera_search.h"
 #include "duoptic/source_choice.h"
 #include "window.h"
 

@@ -12,12 +12,15 @@
 #include "command.h"
 #include "duoptic/frame_files.h"
 #include "duoptic/interrupt.h"
+#include "duoptic/player.h"
 #include "duoptic/source_choice.h"
+#include "input.h"
 #include "panels.h"
-#include "player.h"
-#include "rig_report.h"
+#include "run_news.h"
 #include "sidebar.h"
+#include "sink_options.h"
 #include "start.h"
+#include "tracking_options.h"
 #include "window.h"
 
 namespace duo::app::view {
@@ -52,10 +55,13 @@ constexpr std::pair<const char*, const char*> kKeys[] = {{"Space", "pause, play"
                                                          {"Q", "close"}};
 
 struct Options {
-  PlayerOptions player;
-  std::string rig, screenshot;
+  InputOptions input;
+  TrackingOptions tracking;
+  SinkOptions sinks;
+  RigCheck check = RigCheck::kTell;
+  std::string screenshot;
   std::int64_t after = 0;
-  bool paused = false;
+  bool loop = false, paused = false;
 };
 
 class Viewer {
@@ -214,7 +220,7 @@ class Viewer {
     if (pairs > options_.after || player_.newest() != shown_) return {};
     return Error{ErrorCode::kBadInput,
                  fmt::format("cannot take a screenshot of frame {}: {} ends after {} pairs, numbered from 0", options_.after,
-                             options_.player.left, pairs)};
+                             options_.input.left, pairs)};
   }
 
   const Options& options_;
@@ -235,50 +241,56 @@ Result<std::unique_ptr<Window>> open_window() {
   return window;
 }
 
-Result<Input> open_given(Options& options) {
-  options.player.rig.reset();
-  if (!options.rig.empty()) {
-    DUO_TRY_ASSIGN(options.player.rig, load_rig(options.rig));
-  }
-  return open_input(options.player.left, options.player.right, options.player.rig, options.player.input);
-}
-
 /// In the window, which is opened where it is not; false when it was closed before a rig was saved.
 Result<bool> calibrate(Options& options, std::unique_ptr<Window>& window, std::unique_ptr<PairSource> pairs) {
   if (!window) {
     DUO_TRY_ASSIGN(window, open_window());
   }
-  PlayerOptions& source = options.player;
+  InputOptions& source = options.input;
   while (true) {
+    const auto again = [source] { return open_pairs(source.left, source.right, source.wish()); };
+    const bool two = !source.right.empty();
     DUO_TRY_ASSIGN(const CalibrationEnd end,
-                   CalibrationPage::run(*window, {source.left, source.right, source.input, Window::wake}, std::move(pairs)));
-    options.rig = end.rig;
+                   CalibrationPage::run(*window, {source.left, two ? source.right : source.left, again, Window::wake},
+                                        std::move(pairs), two));
+    source.rig = end.rig;
     if (!end.swapped) return !end.rig.empty();
     std::swap(source.left, source.right);
-    DUO_TRY_ASSIGN(Input input, open_given(options));
+    DUO_TRY_ASSIGN(Input input, source.open());
     pairs = std::move(input.pairs);
   }
 }
 
 /// What is named, with its rig; cameras and videos without one are calibrated first. Null when the window was closed.
 Result<std::unique_ptr<Player>> open_player(Options& options, std::unique_ptr<Window>& window, const CLI::App& app) {
-  DUO_TRY_ASSIGN(Input input, open_given(options));
+  DUO_TRY_ASSIGN(Input input, options.input.open());
   if (!input.rig && !input.pairs->still() && options.screenshot.empty()) {
     DUO_TRY_ASSIGN(const bool calibrated, calibrate(options, window, std::move(input.pairs)));
     if (!calibrated) return std::unique_ptr<Player>();
-    DUO_TRY_ASSIGN(input, open_given(options));
+    DUO_TRY_ASSIGN(input, options.input.open());
   }
-  return Player::open(options.player, std::move(input), app);
+  static_cast<void>(options.sinks.on_stdout());  // two outputs there are a mistake
+  TrackingOptions tracking = options.tracking.or_tracker("body");
+  tracking.all_maps = true;
+  PlayerSetup setup{
+      .sinks = options.sinks, .loop = options.loop, .on_news = Window::wake, .say = [&app](const std::string& line) {
+        say(app, line);
+      }};
+  DUO_TRY_ASSIGN(setup.pipeline, tracking.setup(input));
+  setup.pipeline.frames.wants.depth = true;  // for who saves what is shown
+  setup.pipeline.check = options.check;
+  setup.open = [given = options.input, rig = input.rig] { return open_input(given.left, given.right, rig, given.wish()); };
+  return Player::open(std::move(setup), std::move(input.pairs));
 }
 
 /// Until what was chosen can be shown; null when the window was closed.
 Result<std::unique_ptr<Player>> choose_player(Options& options, std::unique_ptr<Window>& window, const CLI::App& app) {
-  StartPage page(*window, options.rig);
+  StartPage page(*window, options.input.rig);
   std::string problem;
   while (const auto choice = page.choose(problem)) {
-    options.player.left = choice->left;
-    options.player.right = choice->right;
-    options.rig = choice->rig;
+    options.input.left = choice->left;
+    options.input.right = choice->right;
+    options.input.rig = choice->rig;
     auto player = open_player(options, window, app);
     if (player && *player) return player;
     problem = player ? "" : player.error().what;
@@ -287,11 +299,10 @@ Result<std::unique_ptr<Player>> choose_player(Options& options, std::unique_ptr<
 }
 
 Result<Exit> run(Options options, const CLI::App& app) {
-  Interrupt::is_the_end();  // it closes the window as its user would: lines are completed
-  options.player.on_news = Window::wake;
+  Interrupt::is_the_end();         // it closes the window as its user would: lines are completed
   std::unique_ptr<Window> window;  // outlives the player, which wakes it
   std::unique_ptr<Player> player;
-  if (options.player.left.empty()) {
+  if (options.input.left.empty()) {
     DUO_TRY_ASSIGN(window, open_window());
     DUO_TRY_ASSIGN(player, choose_player(options, window, app));
   } else {
@@ -301,13 +312,16 @@ Result<Exit> run(Options options, const CLI::App& app) {
   if (!window) {
     DUO_TRY_ASSIGN(window, open_window());
   }
-  remember_source({options.player.left, options.player.right, options.rig});
-  DUO_TRY_ASSIGN(Sidebar sidebar, Sidebar::make(options.player, *player, window->device(), window->scale()));
+  const InputOptions& source = options.input;
+  remember_source({source.left, source.right, source.rig});
+  DUO_TRY_ASSIGN(Sidebar sidebar,
+                 Sidebar::make(fmt::format("{}{}{}", source.left, source.right.empty() ? "" : ", ", source.right),
+                               options.tracking.engine, *player, window->device(), window->scale()));
   const Result<void> shown = Viewer(options, *window, *player, std::move(sidebar)).run();
-  DUO_TRY_ASSIGN(const Exit exit, player->finish());
+  DUO_TRY_ASSIGN(const Next end, player->finish());
   DUO_TRY(shown);
   if (!player->warning().empty()) say(app, "warning: " + player->warning());
-  return exit;
+  return end == Next::kCut ? Exit::kCut : Exit::kOk;
 }
 
 }  // namespace
@@ -315,15 +329,15 @@ Result<Exit> run(Options options, const CLI::App& app) {
 Command add(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("view", "A window: depth, points, and people in 3D; or an arm tracked from three clicks");
   const auto options = std::make_shared<Options>();
-  sub->add_option("LEFT", options->player.left,
+  sub->add_option("LEFT", options->input.left,
                   "Picture or video of the left camera, the camera itself (camera:0, /dev/video0, http://, rtsp://, gst:),\nor "
                   "synthetic; alone: both views side by side. Without it the window asks");
-  sub->add_option("RIGHT", options->player.right, "The same of the right camera");
-  sub->add_option("--rig", options->rig, "Calibration (our JSON, OpenCV's YAML or JSON); left out: the source's own");
-  options->player.input.add_to(*sub);
-  CLI::Option* loop = sub->add_flag("--loop", options->player.loop, "Start again at the end of a file");
+  sub->add_option("RIGHT", options->input.right, "The same of the right camera");
+  sub->add_option("--rig", options->input.rig, "Calibration (our JSON, OpenCV's YAML or JSON); left out: the source's own");
+  options->input.add_to(*sub);
+  CLI::Option* loop = sub->add_flag("--loop", options->loop, "Start again at the end of a file");
   sub->add_flag("--paused", options->paused, "Wait at the first frame");
-  options->player.sinks.add_to(*sub);
+  options->sinks.add_to(*sub);
   CLI::Option* shot = sub->add_option("--screenshot", options->screenshot, "Write a PNG of the window, then close it")
                           ->type_name("FILE")
                           ->excludes(loop);
@@ -332,8 +346,8 @@ Command add(CLI::App& app) {
       ->check(within(std::int64_t{0}, std::int64_t{1} << 40))
       ->needs(shot)
       ->capture_default_str();
-  add_strict_option(*sub, options->player.check);
-  options->player.tracking.add_to(*sub);
+  add_strict_option(*sub, options->check);
+  options->tracking.add_to(*sub);
   sub->footer(kFooter);
   return {sub, [options, sub] { return run(*options, *sub); }};
 }

@@ -127,6 +127,14 @@ class Calibrator {
 /// Errors  those of every rig; near_m not above zero
 Result<int> disparities_from(const Rig& rig, double near_m);
 
+/// What the search for people needs: disparities_from() half a metre, but no more than 256, as every matcher takes them: a
+/// large picture starts at a greater depth.
+///
+/// Errors  those of every rig
+inline constexpr double kNearestPeople_m = 0.5;
+inline constexpr int kMostPeopleDisparities = 256;
+Result<int> disparities_for_people(const Rig& rig);
+
 /// What a rig can do, for its user.
 struct RigDescription {
   double common_degrees = 0;  // width of what both cameras see at 2 m

@@ -1,8 +1,11 @@
 // How good depth is, measured on a flat wall: fill rate, plane fit, sub-pixel error, temporal noise, distance.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "duoptic/frame.h"
 #include "duoptic/result.h"
@@ -46,6 +49,35 @@ class DepthQualityMeter {
  private:
   struct State;
   std::unique_ptr<State> state_;
+};
+
+/// The figures as lines of text: distance, fill rate, plane fit; noise of several frames; error where the distance is known.
+std::vector<std::string> lines_of(const DepthQuality& quality);
+
+/// The figures of a region that is chosen anew now and then, while frames come.
+class RegionQuality {
+ public:
+  /// The wall is at this distance from the left lens; 0: not known.
+  void set_distance(double distance_m);
+  /// px of the depth picture; an empty region takes it away.
+  void choose(const Rectified& rectified, Window region);
+  const Window& region() const { return region_; }
+
+  /// The last 40 frames count, at most; one that was added before is passed over.
+  void add(const Frame& frame);
+  /// Lines of text: figures, or why there are none.
+  const std::vector<std::string>& lines() const { return lines_; }
+
+ private:
+  void start();
+
+  Rectified rectified_;
+  Window region_;
+  double distance_m_ = 0;
+  std::optional<DepthQualityMeter> meter_;
+  int frames_ = 0;
+  std::optional<std::uint64_t> last_;
+  std::vector<std::string> lines_;
 };
 
 /// The half of the picture around its middle.

@@ -131,6 +131,7 @@ class Detector {
 };
 
 enum class BodyModel : std::uint8_t { kLite, kFull, kHeavy };
+inline constexpr std::array<std::string_view, 3> kBodyModelNames = {"lite", "full", "heavy"};
 
 struct DetectorOptions {
   BodyModel body = BodyModel::kFull;

@@ -75,4 +75,42 @@ class DepthVideo {
   std::unique_ptr<State> state_;
 };
 
+/// The files of a run of frames: those of one picture in the folder itself, of a video's frames in frame_000000 and so on below
+/// it, the depth of all frames as one video, beside its camera. The files of a frame appear together or not at all, and take
+/// the place of all files of an earlier run.
+class FrameFolder {
+ public:
+  /// `still`: the frame of one picture comes. `asked`: files.outputs are what was asked for, not what is usual.
+  ///
+  /// Errors  an output that was asked for needs a rig, and there is none; a video of one picture
+  static Result<FrameFolder> open(std::filesystem::path folder, FrameFiles files, bool asked,
+                                  const std::optional<Rectified>& rectified, bool still, double frame_s);
+  FrameFolder(FrameFolder&&) noexcept;
+  ~FrameFolder();
+  void set_disparity_sigma_px(double sigma_px);
+  /// Errors  those of every written file
+  Result<void> write(const std::shared_ptr<const Frame>& frame, std::uint64_t number, double t_s);
+  /// Completes the video.
+  Result<void> finish();
+  const std::vector<std::string>& paths() const;  // that were written
+
+ private:
+  struct State;
+  explicit FrameFolder(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Whether a limit of depth leaves anything.
+class FarWatch {
+ public:
+  explicit FarWatch(double far_m) : far_m_(far_m) {}
+  void see(const Image<std::uint16_t>& depth_mm);
+  /// One line where almost all depth lies beyond the limit; else empty.
+  std::string warning() const;
+
+ private:
+  double far_m_;
+  std::vector<std::int64_t> pixels_;  // per depth, mm; 0: not known
+};
+
 }  // namespace duo

@@ -23,6 +23,10 @@ struct DisparityRange {
 /// From the 1st to the 99th percentile of the valid pixels, at least 1 px wide; empty without any.
 DisparityRange disparity_range(View<const std::uint16_t> d_q4);
 
+/// The same with room for an arm that is stretched out to the cameras, `nearer` times as near, and without the few far points
+/// that noise makes before a bare wall: no farther than thrice what is near.
+DisparityRange roomy_range(View<const std::uint16_t> d_q4, double nearer);
+
 /// Disparity as colours: the Turbo map (Mikhailov 2019), near is red, none is black, with a legend; the legend is in
 /// metres when `rectified` is given, else in px. The range of the colours is disparity_range().
 Image<Rgb8> draw_disparity(View<const std::uint16_t> d_q4, const Rectified* rectified);
@@ -35,6 +39,9 @@ enum class DepthColors : std::uint8_t { kTurbo, kCividis, kGray };
 /// Shape  both H x W
 void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range, View<Rgb8> dst,
                      DepthColors colors = DepthColors::kTurbo);
+
+/// The colours of color_disparity() from far to near, 256 px, one high.
+Image<Rgb8> depth_strip(DepthColors colors);
 
 /// What of a drawn depth map was not matched (Frame::matched): the rectified picture, dark and gray, with a line around the
 /// part that was matched.
@@ -56,6 +63,14 @@ void draw_regions(const Frame& frame, const Rectified& rectified, std::span<cons
 ///
 /// Shape  src and dst H x W
 void draw_hue(View<const Rgb8> src, View<Rgb8> dst);
+
+/// The hues of draw_hue() from 0 to 360 degrees, 256 px, one high.
+Image<Rgb8> hue_strip();
+
+/// Pictures side by side, top-aligned on black.
+Image<Rgb8> side_by_side(std::span<const View<const Rgb8>> pictures);
+/// Both rectified pictures of a frame that has them, gray.
+Image<Rgb8> draw_rectified(const Frame& frame);
 
 /// The cloud drawn from a camera moved sideways and up, so that a person sees its shape without a 3D program.
 Image<Rgb8> draw_cloud(View<const std::uint16_t> d_q4, View<const Rgb8> color, const Rectified& rectified, Size size);

@@ -61,6 +61,9 @@ struct Rig {
   double baseline_m() const { return norm(right_from_left.t_m); }
 };
 
+/// Now, as Rig::date has it.
+std::string date_now();
+
 /// A camera without distortion, and its like `baseline_m` to the right of it.
 ///
 /// Units   pixels of the left picture, the centre of the top-left one is (0, 0); metres, z along the axis

@@ -43,6 +43,9 @@ struct SceneHealth {
   bool cut = false;                          // the stream was cut short; its whole pairs were used
 };
 
+/// The worst of all; `scene`: null where none was looked at.
+RigVerdict overall(const std::vector<RigDoubt>& doubts, const SceneHealth* scene);
+
 /// `row_px` below this is good, from the other on useless for matching.
 inline constexpr double kGoodRow_px = 0.25, kUselessRow_px = 0.75;
 

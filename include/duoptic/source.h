@@ -1,11 +1,14 @@
 // Sources give pictures, from files or as they are taken. Pairs come from two sources or from one with both views side by side.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "duoptic/frame.h"
 #include "duoptic/result.h"
@@ -51,6 +54,7 @@ struct CameraWish {
 
 /// Where both views lie in the pictures of one source; the first named is the left half, or the upper one.
 enum class ViewLayout : std::uint8_t { kSideBySide, kRightLeft, kTopBottom, kBottomTop };
+inline constexpr std::array<std::string_view, 4> kViewLayoutNames = {"side-by-side", "right-left", "top-bottom", "bottom-top"};
 
 /// What is asked of two cameras, and what is known of files that they do not say themselves.
 struct PairWish {
@@ -116,6 +120,18 @@ class PairSource {
 ///         nothing in common, videos without a picture that pairs
 Result<std::unique_ptr<PairSource>> open_pairs(const std::filesystem::path& left, const std::filesystem::path& right,
                                                const PairWish& wish = {});
+
+/// Pairs with the rig that they are seen with.
+struct Input {
+  std::unique_ptr<PairSource> pairs;
+  std::optional<Rig> rig;
+  std::vector<std::string> names;  // as the user wrote them, left first
+};
+
+/// Opens LEFT and perhaps RIGHT. `rig` wins over the source's own, and cameras are asked for the size that it was made for.
+///
+/// Errors  those of open_pairs(); half of LEFT alone is half of what the rig was made for: RIGHT is missing
+Result<Input> open_input(const std::string& left, const std::string& right, const std::optional<Rig>& rig, PairWish wish = {});
 
 /// The pairs of files at the pace of their capture times, as if they came live: one that is late is dropped when the next is
 /// due, too.

@@ -166,4 +166,33 @@ class LightDecoder {
 /// Errors  those of every written file
 Result<void> write_scene(const LightTruth& truth, const std::filesystem::path& folder);
 
+// --- Folders -------------------------------------------------------------------------------------------------------------
+
+/// How many of all are done; false: its user wants no more. That is an error, and nothing was written.
+using LightProgress = std::function<bool(std::size_t done)>;
+
+inline constexpr const char* kLightCodeFile = "patterns.json";
+
+/// pattern_000.png on and patterns.json, to be shown by other means. They appear when all is done.
+///
+/// Errors  those of check_light_code() and of every written file
+Result<void> write_light_patterns(const LightCode& code, int white, const std::filesystem::path& folder,
+                                  const LightProgress& progress);
+
+/// record_light() into a folder: left_000.png and right_000.png on, and patterns.json. They appear when all is done.
+///
+/// Errors  those of record_light() and of every written file
+Result<void> record_light_folder(PairSource& pairs, const LightCode& code, const LightRecording& how, LightScreen& screen,
+                                 const std::filesystem::path& folder, const LightProgress& progress);
+
+/// Folders of recorded pictures, exposures of the same scene.
+struct LightFolders {
+  std::vector<std::string> folders;
+  std::vector<std::string> light = {};  // left and right picture in ordinary light; none: those of the black pattern
+  std::optional<Rig> rig = {};          // none: the pictures are rectified
+  int threads = 1;
+};
+/// Errors  those of find_light_files(), of every picture and of LightDecoder
+Result<LightTruth> decode_light_folders(const LightCode& code, const LightFolders& what, const LightProgress& progress);
+
 }  // namespace duo

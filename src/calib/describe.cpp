@@ -26,6 +26,11 @@ Result<int> disparities_from(const Rig& rig, double near_m) {
   return disparities_from(geometry, near_m);
 }
 
+Result<int> disparities_for_people(const Rig& rig) {
+  DUO_TRY_ASSIGN(const int from_nearest, disparities_from(rig, kNearestPeople_m));
+  return std::min(from_nearest, kMostPeopleDisparities);
+}
+
 Result<RigDescription> describe_rig(const Rig& rig, double near_m) {
   DUO_TRY_ASSIGN(const Rectified geometry, rectified_geometry(rig, ""));
   RigDescription out{.rectified = geometry.size, .near_m = near_m};

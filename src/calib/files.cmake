@@ -6,7 +6,7 @@ target_sources(duoptic PRIVATE ${dir}/align_match.cpp ${dir}/judge_scene.cpp ${d
   ${dir}/rig_two_texts.cpp ${dir}/rig_yaml.cpp ${dir}/row_offsets.cpp ${dir}/scene_matches.cpp ${dir}/scene_patches.cpp
   ${dir}/scene_pose.cpp ${dir}/yaml_reader.cpp)
 target_sources(duoptic PRIVATE ${dir}/board.cpp ${dir}/board_files.cpp ${dir}/board_page.cpp ${dir}/bundle.cpp
-  ${dir}/calibrate.cpp ${dir}/calibration_guide.cpp ${dir}/calibration_report.cpp ${dir}/describe.cpp ${dir}/doubt_calibration.cpp ${dir}/find_board.cpp
+  ${dir}/calibrate.cpp ${dir}/calibration_guide.cpp ${dir}/calibration_report.cpp ${dir}/calibration_session.cpp ${dir}/describe.cpp ${dir}/doubt_calibration.cpp ${dir}/find_board.cpp
   ${dir}/find_markers.cpp ${dir}/judge_bundle.cpp ${dir}/picture_figures.cpp ${dir}/recognise_board.cpp ${dir}/rectify_pair.cpp ${dir}/refine_corners.cpp ${dir}/report_plots.cpp
   ${dir}/start_bundle.cpp)
 duoptic_test(calib/align_match ${dir}/align_match_test.cpp)
@@ -14,6 +14,7 @@ duoptic_test(calib/board ${dir}/board_test.cpp)
 duoptic_test(calib/board_sets ${dir}/board_sets_test.cpp SLOW)
 duoptic_test(calib/calibrate ${dir}/calibrate_test.cpp SLOW)
 duoptic_test(calib/calibration_guide ${dir}/calibration_guide_test.cpp)
+duoptic_test(calib/calibration_session ${dir}/calibration_session_test.cpp)
 duoptic_test(calib/clips ${dir}/clips_test.cpp)
 duoptic_test(calib/recognise_board ${dir}/recognise_board_test.cpp)
 duoptic_test(calib/rectification ${dir}/rectification_test.cpp)

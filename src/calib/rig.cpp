@@ -1,6 +1,8 @@
 #include "duoptic/rig.h"
 
 #include <algorithm>
+#include <array>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "calib/rig_formats.h"
@@ -32,6 +34,15 @@ std::string_view kind_of_bytes(std::string_view bytes) {
 }
 
 }  // namespace
+
+std::string date_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
+}
 
 Result<std::string_view> rig_text(std::string_view text, const std::string& name) {
   if (const std::string_view kind = kind_of_bytes(text); !kind.empty())

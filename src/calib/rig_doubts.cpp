@@ -138,4 +138,10 @@ std::vector<RigDoubt> rig_doubts(const Rig& rig) {
   return doubts.take();
 }
 
+RigVerdict overall(const std::vector<RigDoubt>& doubts, const SceneHealth* scene) {
+  RigVerdict worst = scene != nullptr ? scene->verdict : RigVerdict::kGood;
+  for (const RigDoubt& doubt : doubts) worst = std::max(worst, doubt.verdict);
+  return worst;
+}
+
 }  // namespace duo

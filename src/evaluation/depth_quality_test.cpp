@@ -109,5 +109,30 @@ TEST(DepthQuality, RefusesWhereThereIsNoWall) {
   EXPECT_NE(thin.error().what.find("on a line"), std::string::npos) << thin.error().what;
 }
 
+// Of a region that is chosen: figures from the first frame on, each frame once; none of a region that is taken away.
+TEST(RegionQuality, MeasuresTheRegionThatIsChosen) {
+  std::mt19937 random(2);
+  RegionQuality quality;
+  Frame frame = seen({.z_m = 1.5, .noise_px = 0.1}, random);
+  quality.add(frame);
+  EXPECT_TRUE(quality.lines().empty());
+  quality.choose(camera(), {300, 200, 100, 100});
+  EXPECT_EQ(quality.region(), (Window{300, 200, 20, 40}));
+  quality.add(frame);
+  ASSERT_EQ(quality.lines().size(), 3U);
+  EXPECT_EQ(quality.lines()[1], "fill rate 100.0 %");
+  quality.set_distance(1.4);
+  for (std::uint64_t i = 1; i <= 6; ++i) {
+    frame.sequence = i;
+    quality.add(frame);
+    quality.add(frame);
+  }
+  ASSERT_EQ(quality.lines().size(), 5U);
+  EXPECT_NE(quality.lines()[3].find("of 6 frames"), std::string::npos) << quality.lines()[3];
+  EXPECT_NEAR(std::stod(quality.lines()[4].substr(8)), 100, 10) << quality.lines()[4];  // mm
+  quality.choose(camera(), {});
+  EXPECT_TRUE(quality.lines().empty());
+}
+
 }  // namespace
 }  // namespace duo

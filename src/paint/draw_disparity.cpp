@@ -67,6 +67,12 @@ DisparityRange disparity_range(View<const std::uint16_t> d_q4) {
   return {far_px, std::max(near_px, far_px + 1)};
 }
 
+DisparityRange roomy_range(View<const std::uint16_t> d_q4, double nearer) {
+  constexpr double kFarther = 3;
+  const DisparityRange range = disparity_range(d_q4);
+  return range.empty() ? range : DisparityRange{std::max(range.far_px, range.near_px / kFarther), range.near_px * nearer};
+}
+
 // A table, because there are far fewer disparities than pixels.
 void color_disparity(View<const std::uint16_t> d_q4, const DisparityRange& range, View<Rgb8> dst, DepthColors of) {
   DUO_CHECK(d_q4.size() == dst.size());
@@ -138,6 +144,15 @@ Image<Rgb8> draw_disparity(View<const std::uint16_t> d_q4, const Rectified* rect
   const DisparityRange range = disparity_range(d_q4);
   color_disparity(d_q4, range, out.view().crop(0, 0, d_q4.size()));
   draw_legend(out.view().crop(d_q4.height(), 0, {d_q4.width(), legend_height}), range, rectified);
+  return out;
+}
+
+Image<Rgb8> depth_strip(DepthColors colors) {
+  constexpr int kSteps = 256;
+  Image<std::uint16_t> ramp({kSteps, 1});
+  for (int x = 0; x < kSteps; ++x) ramp.at(0, x) = static_cast<std::uint16_t>(x * 16);
+  Image<Rgb8> out(ramp.size());
+  color_disparity(ramp, {0, kSteps - 1.0}, out, colors);
   return out;
 }
 

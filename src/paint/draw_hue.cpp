@@ -37,4 +37,10 @@ void draw_hue(View<const Rgb8> src, View<Rgb8> dst) {
     }
 }
 
+Image<Rgb8> hue_strip() {
+  Image<Rgb8> out({256, 1});
+  for (int x = 0; x < out.width(); ++x) out.at(0, x) = color_of_hue(x);
+  return out;
+}
+
 }  // namespace duo

@@ -8,5 +8,6 @@ target_sources(duoptic PRIVATE
   ${dir}/draw_people.cpp
   ${dir}/draw_points.cpp
   ${dir}/draw_regions.cpp
-  ${dir}/shapes.cpp)
+  ${dir}/shapes.cpp
+  ${dir}/side_by_side.cpp)
 duoptic_test(paint/paint ${dir}/paint_test.cpp)

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 #include <tuple>
 
@@ -30,6 +31,41 @@ TEST(ColorDisparity, GrayAndCividisGrowBrighterTowardsTheCameras) {
   EXPECT_LT(painted.at(0, 0).g, painted.at(0, 1).g);
   EXPECT_LT(painted.at(0, 1).g, painted.at(0, 2).g);
   EXPECT_EQ(painted.at(0, 3), Rgb8{});
+}
+
+TEST(Strips, HaveTheColoursInOrder) {
+  const Image<Rgb8> depth = depth_strip(DepthColors::kGray), hue = hue_strip();
+  EXPECT_EQ(depth.at(0, 0), (Rgb8{40, 40, 40}));
+  EXPECT_EQ(depth.at(0, 255), (Rgb8{255, 255, 255}));
+  EXPECT_EQ(hue.at(0, 0), (Rgb8{255, 0, 0}));
+  EXPECT_EQ(hue.at(0, 85), (Rgb8{0, 255, 0}));
+  EXPECT_EQ(hue.at(0, 171), (Rgb8{0, 0, 255}));
+}
+
+TEST(SideBySide, TopAlignedOnBlack) {
+  Frame frame;
+  frame.left = Image<std::uint8_t>({2, 1}), frame.right = Image<std::uint8_t>({2, 1});
+  frame.left.at(0, 1) = 7, frame.right.at(0, 0) = 9;
+  const Image<Rgb8> pair = draw_rectified(frame);
+  ASSERT_EQ(pair.size(), (Size{4, 1}));
+  EXPECT_EQ(pair.at(0, 1), (Rgb8{7, 7, 7}));
+  EXPECT_EQ(pair.at(0, 2), (Rgb8{9, 9, 9}));
+  Image<Rgb8> high({1, 2});
+  high.at(1, 0) = {1, 2, 3};
+  const Image<Rgb8> both = side_by_side(std::array<View<const Rgb8>, 2>{pair, high});
+  ASSERT_EQ(both.size(), (Size{5, 2}));
+  EXPECT_EQ(both.at(1, 4), (Rgb8{1, 2, 3}));
+  EXPECT_EQ(both.at(1, 0), Rgb8{});
+}
+
+TEST(RoomyRange, LeavesRoomForAnArm) {
+  Image<std::uint16_t> d_q4({4, 1});
+  d_q4.at(0, 0) = 16 * 4, d_q4.at(0, 1) = 16 * 40, d_q4.at(0, 2) = 16 * 40, d_q4.at(0, 3) = 16 * 40;
+  const DisparityRange range = disparity_range(d_q4), roomy = roomy_range(d_q4, 1.25);
+  EXPECT_EQ(roomy.near_px, 1.25 * range.near_px);
+  EXPECT_EQ(roomy.far_px, range.near_px / 3);
+  d_q4.at(0, 0) = d_q4.at(0, 1) = d_q4.at(0, 2) = d_q4.at(0, 3) = Disparity::kNone;
+  EXPECT_TRUE(roomy_range(d_q4, 1.25).empty());
 }
 
 TEST(DrawUnmatched, DarkPictureAroundALineAroundWhatWasMatched) {

@@ -10,7 +10,9 @@ target_sources(duoptic PRIVATE
   ${dir}/coded_view.cpp
   ${dir}/csv.cpp
   ${dir}/depth_video.cpp
+  ${dir}/far_watch.cpp
   ${dir}/frame_files.cpp
+  ${dir}/frame_folder.cpp
   ${dir}/gltf.cpp
   ${dir}/in_background.cpp
   ${dir}/json_lines.cpp

@@ -251,5 +251,39 @@ TEST_F(FrameFilesTest, DepthOfAVideoComesBackToTheMillimetre) {
   }
 }
 
+TEST_F(FrameFilesTest, AFolderOfFramesHasThemBelowIt) {
+  const auto frame = std::make_shared<const Frame>(std::move(wall_.frame));
+  const FrameFiles both{.outputs = {FrameOutput::kDepth, FrameOutput::kDepthVideo}};
+  {
+    auto out = FrameFolder::open(folder_, both, true, wall_.rectified, false, 1.0 / 30);
+    ASSERT_TRUE(out) << out.error().what;
+    for (const std::uint64_t number : {3, 5}) ASSERT_TRUE(out->write(frame, number, static_cast<double>(number) / 30));
+    EXPECT_FALSE(fs::exists(folder_ / "depth.mkv")) << "before it is whole";
+    ASSERT_TRUE(out->finish());
+    EXPECT_EQ(out->paths().size(), 4U);
+    EXPECT_EQ(out->paths()[0], (folder_ / "frame_000003/depth.png").string());
+  }
+  EXPECT_EQ(names(), (std::vector<std::string>{"camera.json", "depth.mkv", "frame_000003", "frame_000005"}));
+  const auto refused = [&](bool asked, const std::optional<Rectified>& rectified, bool still) {
+    const auto out = FrameFolder::open(folder_, both, asked, rectified, still, 1.0 / 30);
+    return out ? std::string() : out.error().what;
+  };
+  EXPECT_EQ(refused(true, {}, false), "cannot write depth: it needs a rig; give one with --rig");
+  EXPECT_EQ(refused(false, {}, false), "");
+  EXPECT_EQ(refused(true, wall_.rectified, true), "cannot write depth-video of one picture; take --outputs depth");
+}
+
+TEST(FarWatch, WarnsWhereALimitLeavesAlmostNothing) {
+  Image<std::uint16_t> depth_mm({100, 10});
+  for (int y = 0; y < 10; ++y)
+    for (int x = 0; x < 100; ++x) depth_mm.at(y, x) = static_cast<std::uint16_t>(x < 50 ? 0 : 2000 + x);  // half unknown
+  FarWatch none(1.5), all(3), without(kNoFarLimit_m);
+  for (FarWatch* watch : {&none, &all, &without}) watch->see(depth_mm);
+  EXPECT_EQ(none.warning(), "almost all that was found lies farther than --far 1.5 and is left out: the nearest is at 2.05");
+  EXPECT_EQ(all.warning(), "");
+  EXPECT_EQ(without.warning(), "");
+  EXPECT_EQ(FarWatch(1).warning(), "") << "nothing was seen";
+}
+
 }  // namespace
 }  // namespace duo

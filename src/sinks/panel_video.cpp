@@ -16,11 +16,8 @@ class PanelVideo final : public Sink {
 
   Result<void> write(const TrackedFrame& frame) override {
     if (range_.empty()) {
-      // Fixed from the first frame on, so that a colour is a depth: with room for an arm stretched out to the cameras, and
-      // without the few far points that noise makes before a bare wall.
-      constexpr double kNearer = 1.7, kFarther = 3;
-      range_ = disparity_range(frame.frame->disparity.d_q4);
-      range_ = {std::max(range_.far_px, range_.near_px / kFarther), range_.near_px * kNearer};
+      constexpr double kNearer = 1.7;  // fixed from the first frame on, so that a colour is a depth
+      range_ = roomy_range(frame.frame->disparity.d_q4, kNearer);
     }
     return video_.write(draw_panels(frame, header_, range_));
   }

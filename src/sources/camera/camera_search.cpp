@@ -1,6 +1,6 @@
-#include "camera_search.h"
+#include "duoptic/camera_search.h"
 
-namespace duo::app::view {
+namespace duo {
 namespace {
 
 constexpr std::chrono::seconds kSearchAgain(2), kPatience(1);
@@ -40,4 +40,4 @@ std::shared_ptr<const CameraSearch::Found> CameraSearch::found(std::chrono::mill
   return shared_->found;
 }
 
-}  // namespace duo::app::view
+}  // namespace duo

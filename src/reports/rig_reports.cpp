@@ -1,15 +1,12 @@
-#include "rig_report.h"
-
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <numbers>
 
-#include "command.h"
+#include "duoptic/reports.h"
+#include "reports/report_json.h"
 
-namespace duo::app {
+namespace duo {
 namespace {
 
 constexpr double kDeg = 180 / std::numbers::pi;
@@ -21,7 +18,7 @@ nlohmann::json list(Vec3 v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
-std::string describe(const Rig& rig) {
+std::string text_of(const Rig& rig) {
   const Vec3 turns = turns_deg(rig.right_from_left.rotation);
   return fmt::format(
       "{}x{}, focal lengths {:.1f} and {:.1f} px, {:.1f} mm apart{}, right camera turned by tilt {:.2f}, pan {:.2f}, roll "
@@ -31,7 +28,7 @@ std::string describe(const Rig& rig) {
       rig.metric ? "" : " (a guess: the rig is not metric)", turns.x, turns.y, turns.z);
 }
 
-nlohmann::json to_json(const Rig& rig) {
+nlohmann::json report_json(const Rig& rig) {
   return {{"width", rig.left.size.width},
           {"height", rig.left.size.height},
           {"left_focal_px", rig.left.fx_px},
@@ -41,7 +38,7 @@ nlohmann::json to_json(const Rig& rig) {
           {"turns_deg", list(turns_deg(rig.right_from_left.rotation))}};
 }
 
-std::string describe(const SceneHealth& h) {
+std::string text_of(const SceneHealth& h) {
   std::string text = fmt::format("points   {} in {} pair{}, in {:.0f} % of the picture{}\n", h.points, h.pairs,
                                  h.pairs == 1 ? "" : "s", 100 * h.covered, h.missing.empty() ? "" : "; none in " + h.missing);
   text += fmt::format(
@@ -56,7 +53,7 @@ std::string describe(const SceneHealth& h) {
   return text;
 }
 
-nlohmann::json to_json(const SceneHealth& h) {
+nlohmann::json report_json(const SceneHealth& h) {
   return {{"verdict", name_of(h.verdict)},
           {"pairs", h.pairs},
           {"points", h.points},
@@ -71,31 +68,16 @@ nlohmann::json to_json(const SceneHealth& h) {
           {"pan_sigma_px", h.pan_sigma_px}};
 }
 
-nlohmann::json to_json(const std::optional<RigFit>& fit) {
+nlohmann::json report_json(const std::optional<RigFit>& fit) {
   if (!fit) return nullptr;
   return {{"verdict", name_of(fit->verdict)},
           {"what", fit->what},
           {"disparity_sigma_px", fit->disparity_sigma_px},
-          {"scene", fit->scene ? to_json(*fit->scene) : nlohmann::json()}};
+          {"scene", fit->scene ? report_json(*fit->scene) : nlohmann::json()}};
 }
 
-void add_strict_option(CLI::App& app, RigCheck& check) {
-  check = RigCheck::kTell;
-  app.add_flag_callback(
-      "--strict", [&check] { check = RigCheck::kStrict; },
-      "Stop with exit 4, and not only warn, when the first pairs (live: of any minute) show that the rig does not fit");
-}
+std::string json_of(const Rig& rig) { return json_text(report_json(rig)); }
+std::string json_of(const SceneHealth& health) { return json_text(report_json(health)); }
+std::string json_of(const std::optional<RigFit>& fit) { return json_text(report_json(fit)); }
 
-void say_rig_news(const CLI::App& app, const Pipeline& pipeline) {
-  if (const std::string news = pipeline.rig_news(); !news.empty()) say(app, "warning: " + news);
-}
-
-std::string date_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
-
-RigVerdict overall(const std::vector<RigDoubt>& doubts, const SceneHealth* scene) {
-  RigVerdict worst = scene != nullptr ? scene->verdict : RigVerdict::kGood;
-  for (const RigDoubt& doubt : doubts) worst = std::max(worst, doubt.verdict);
-  return worst;
-}
-
-}  // namespace duo::app
+}  // namespace duo

@@ -1,4 +1,4 @@
-#include "calibrating.h"
+#include "duoptic/calibration_session.h"
 
 #include <fmt/format.h>
 
@@ -7,60 +7,58 @@
 #include <filesystem>
 #include <utility>
 
-#include "rig_report.h"
-
-namespace duo::app::view {
+namespace duo {
 namespace {
 
 constexpr TimeNs kEvery_ns = 100'000'000;  // of files
-constexpr double kNearest_m = 0.5;         // that the report counts disparities for
+constexpr double kReported_m = 0.5;        // that the report counts disparities for
 
 }  // namespace
 
-Calibrating::Calibrating(CalibratingOptions options, std::unique_ptr<PairSource> pairs, const Board& board)
-    : options_(std::move(options)), live_(pairs->live()), pairs_(std::move(pairs)), guide_(board, pairs_->size()) {
+CalibrationSession::CalibrationSession(CalibrationSessionSetup setup, std::unique_ptr<PairSource> pairs, const Board& board)
+    : setup_(std::move(setup)), live_(pairs->live()), pairs_(std::move(pairs)), guide_(board, pairs_->size()) {
   status_.count = pairs_->count();
 }
 
-Result<std::unique_ptr<Calibrating>> Calibrating::start(CalibratingOptions options, std::unique_ptr<PairSource> pairs,
-                                                        const Board& board) {
-  std::unique_ptr<Calibrating> out(new Calibrating(std::move(options), std::move(pairs), board));
+Result<std::unique_ptr<CalibrationSession>> CalibrationSession::start(CalibrationSessionSetup setup,
+                                                                      std::unique_ptr<PairSource> pairs, const Board& board) {
+  std::unique_ptr<CalibrationSession> out(new CalibrationSession(std::move(setup), std::move(pairs), board));
   DUO_TRY_ASSIGN(out->thread_,
                  Worker::start("look for the board", [c = out.get()](const std::stop_token& stop) { return c->run(stop); }));
   return out;
 }
 
-Calibrating::~Calibrating() {
+CalibrationSession::~CalibrationSession() {
   thread_.ask_to_stop();
   wishes_.close();
 }
 
-CalibratingStatus Calibrating::status() const {
+SessionStatus CalibrationSession::status() const {
   const std::lock_guard lock(mutex_);
   return status_;
 }
 
-Board Calibrating::board() const {
+Board CalibrationSession::board() const {
   const std::lock_guard lock(mutex_);
   return guide_.board();
 }
 
-void Calibrating::choose(const Board& board) {
+void CalibrationSession::choose(const Board& board) {
   post([this, board] { begin(board); });
 }
 
-void Calibrating::set_square_m(double square_m) {
+void CalibrationSession::set_square_m(double square_m) {
   post([this, square_m] {
     {
       const std::lock_guard lock(mutex_);
       guide_.set_square_m(square_m);
-      if (status_.state != CalibratingState::kSolved) return;
+      if (status_.state != SessionState::kSolved) return;
     }
     find_rig();
   });
 }
 
-void Calibrating::recognise() {
+void CalibrationSession::recognise() {
   post([this] {
     const auto pair = status().pair;
     if (!pair) return;
@@ -70,18 +68,18 @@ void Calibrating::recognise() {
   });
 }
 
-void Calibrating::solve() {
+void CalibrationSession::solve() {
   post([this] { find_rig(); });
 }
 
-void Calibrating::go_on() {
+void CalibrationSession::go_on() {
   post([this] {
     const std::lock_guard lock(mutex_);
-    status_.state = ended_ ? CalibratingState::kEnded : CalibratingState::kLooking;
+    status_.state = ended_ ? SessionState::kEnded : SessionState::kLooking;
   });
 }
 
-Result<void> Calibrating::save(const std::string& file) const {
+Result<void> CalibrationSession::save(const std::string& file) const {
   const std::filesystem::path path = file;
   std::error_code ignored;
   if (file.empty()) return Error{ErrorCode::kWriteFailed, "cannot save the rig: give its file a name"};
@@ -90,23 +88,23 @@ Result<void> Calibrating::save(const std::string& file) const {
   const std::lock_guard lock(mutex_);
   if (!status_.found) return Error{ErrorCode::kWriteFailed, "cannot save the rig: there is none yet"};
   const Calibration& found = *status_.found;
-  DUO_TRY_ASSIGN(const RigDescription can, describe_rig(found.rig, kNearest_m));
+  DUO_TRY_ASSIGN(const RigDescription can, describe_rig(found.rig, kReported_m));
   DUO_TRY(write_calibration_report(found, guide_.board(), can, guide_.shown(),
                                    path.parent_path() / (path.stem().string() + "_report.html")));
   return save_rig(found.rig, path);
 }
 
-bool Calibrating::looking() const {
+bool CalibrationSession::looking() const {
   const std::lock_guard lock(mutex_);
-  return status_.state == CalibratingState::kLooking;
+  return status_.state == SessionState::kLooking;
 }
 
-void Calibrating::say(const std::string& problem) {
+void CalibrationSession::say(const std::string& problem) {
   const std::lock_guard lock(mutex_);
   status_.problem = problem;
 }
 
-Result<void> Calibrating::run(const std::stop_token& stop) {
+Result<void> CalibrationSession::run(const std::stop_token& stop) {
   for (std::function<void()> wish; !stop.stop_requested();) {
     DUO_TRY_ASSIGN(const Taken taken, wishes_.take(wish, std::chrono::milliseconds(looking() ? 0 : 1000)));
     if (taken == Taken::kClosed) break;
@@ -116,20 +114,20 @@ Result<void> Calibrating::run(const std::stop_token& stop) {
       advance();
     else
       continue;
-    options_.on_news();
+    setup_.on_news();
   }
   return {};
 }
 
 /// The next pair; of a file the next that is to be looked at.
-void Calibrating::advance() {
+void CalibrationSession::advance() {
   if (!pair_ || pair_.use_count() > 1) pair_ = std::make_shared<Pair>();
   const Result<Next> next = pairs_->next(*pair_);
   {
     const std::lock_guard lock(mutex_);
     status_.problem = !next ? next.error().what : live_ ? pairs_->warning() : "";
     status_.silent = next && *next == Next::kNothing;
-    if (!next) status_.state = CalibratingState::kEnded;
+    if (!next) status_.state = SessionState::kEnded;
     if (next && *next == Next::kNew) ++status_.looked;
   }
   if (!next || *next == Next::kNothing) return;
@@ -137,7 +135,7 @@ void Calibrating::advance() {
     ended_ = true;
     if (guide_.views() >= CalibrationGuide::kFewestViews) return find_rig();
     const std::lock_guard lock(mutex_);
-    status_.state = CalibratingState::kEnded;
+    status_.state = SessionState::kEnded;
     status_.problem =
         fmt::format("the end, with {} of {} views at least: show the board at more places, still for a second each",
                     guide_.views(), CalibrationGuide::kFewestViews);
@@ -148,7 +146,7 @@ void Calibrating::advance() {
   look();
 }
 
-void Calibrating::look() {
+void CalibrationSession::look() {
   const GuideLook look = guide_.see(*pair_);
   const std::array<PictureFigures, 2> figures = {picture_figures(pair_->left.pixels), picture_figures(pair_->right.pixels)};
   {
@@ -165,47 +163,47 @@ void Calibrating::look() {
 }
 
 /// Without views. A file is read from its start.
-void Calibrating::begin(const Board& board) {
+void CalibrationSession::begin(const Board& board) {
   if (!live_) {
     pairs_.reset();
-    auto input = open_input(options_.left, options_.right, std::nullopt, options_.input);
-    if (!input) {
-      say(input.error().what);
+    auto again = setup_.open();
+    if (!again) {
+      say(again.error().what);
       const std::lock_guard lock(mutex_);
-      status_.state = CalibratingState::kEnded;
+      status_.state = SessionState::kEnded;
       return;
     }
-    pairs_ = std::move(input->pairs);
+    pairs_ = std::move(*again);
   }
   ended_ = false;
   looked_ns_ = 0;
   const std::lock_guard lock(mutex_);
   guide_ = CalibrationGuide(board, pairs_->size());
-  CalibratingStatus fresh;
+  SessionStatus fresh;
   fresh.count = pairs_->count();
   fresh.pair = status_.pair;
   status_ = std::move(fresh);
 }
 
-void Calibrating::find_rig() {
+void CalibrationSession::find_rig() {
   {
     const std::lock_guard lock(mutex_);
-    status_.state = CalibratingState::kSolving;
+    status_.state = SessionState::kSolving;
     status_.found.reset();
     status_.problem.clear();
   }
-  options_.on_news();
+  setup_.on_news();
   auto found = guide_.solve();
   const std::lock_guard lock(mutex_);
-  status_.state = found ? CalibratingState::kSolved : ended_ ? CalibratingState::kEnded : CalibratingState::kLooking;
+  status_.state = found ? SessionState::kSolved : ended_ ? SessionState::kEnded : SessionState::kLooking;
   if (!found) {
     status_.problem = found.error().what;
     return;
   }
-  found->rig.left_name = options_.left;
-  found->rig.right_name = options_.right.empty() ? options_.left : options_.right;
+  found->rig.left_name = setup_.left_name;
+  found->rig.right_name = setup_.right_name;
   found->rig.date = date_now();
   status_.found = std::make_shared<const Calibration>(std::move(*found));
 }
 
-}  // namespace duo::app::view
+}  // namespace duo

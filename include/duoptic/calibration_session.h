@@ -1,4 +1,4 @@
-// Cameras, or files, that are looked at until they have a rig: the guide of the library in a thread of its own.
+// Cameras, or files, that are looked at until they have a rig: the guide of a calibration in a thread of its own.
 #pragma once
 
 #include <array>
@@ -11,21 +11,21 @@
 #include "duoptic/bounded_queue.h"
 #include "duoptic/calibration_guide.h"
 #include "duoptic/picture_figures.h"
+#include "duoptic/source.h"
 #include "duoptic/worker.h"
-#include "input.h"
 
-namespace duo::app::view {
+namespace [[gnu::visibility("default")]] duo {
 
-struct CalibratingOptions {
-  std::string left, right;
-  InputOptions input;
-  std::function<void()> on_news;  // called in the thread when there is something new to show
+struct CalibrationSessionSetup {
+  std::string left_name, right_name;                          // of the cameras, in the rig
+  std::function<Result<std::unique_ptr<PairSource>>()> open;  // the source again: a file is read from its start
+  std::function<void()> on_news = [] {};                      // called in the thread when there is something new to show
 };
 
-enum class CalibratingState : std::uint8_t { kLooking, kSolving, kSolved, kEnded };
+enum class SessionState : std::uint8_t { kLooking, kSolving, kSolved, kEnded };
 
-struct CalibratingStatus {
-  CalibratingState state = CalibratingState::kLooking;
+struct SessionStatus {
+  SessionState state = SessionState::kLooking;
   std::shared_ptr<const Pair> pair;  // the last that was looked at
   GuideLook look;                    // at it
   BoardWishes met{};
@@ -43,14 +43,16 @@ struct CalibratingStatus {
 /// by itself when the guide has enough, and at the end of a file.
 ///
 /// Threads  any
-class Calibrating {
+class CalibrationSession {
  public:
   /// Errors  the system gives no thread
-  static Result<std::unique_ptr<Calibrating>> start(CalibratingOptions options, std::unique_ptr<PairSource> pairs,
-                                                    const Board& board);
-  ~Calibrating();
+  static Result<std::unique_ptr<CalibrationSession>> start(CalibrationSessionSetup setup, std::unique_ptr<PairSource> pairs,
+                                                           const Board& board);
+  ~CalibrationSession();
+  CalibrationSession(const CalibrationSession&) = delete;
+  CalibrationSession& operator=(const CalibrationSession&) = delete;
 
-  CalibratingStatus status() const;
+  SessionStatus status() const;
   bool live() const { return live_; }
   Board board() const;
 
@@ -70,7 +72,7 @@ class Calibrating {
   Result<void> save(const std::string& file) const;
 
  private:
-  Calibrating(CalibratingOptions options, std::unique_ptr<PairSource> pairs, const Board& board);
+  CalibrationSession(CalibrationSessionSetup setup, std::unique_ptr<PairSource> pairs, const Board& board);
   void post(std::function<void()> wish) { wishes_.put(wish); }
   Result<void> run(const std::stop_token& stop);
   void advance();
@@ -80,7 +82,7 @@ class Calibrating {
   void say(const std::string& problem);
   bool looking() const;
 
-  const CalibratingOptions options_;
+  const CalibrationSessionSetup setup_;
   const bool live_;
 
   // The thread's own.
@@ -90,11 +92,11 @@ class Calibrating {
   bool ended_ = false;
 
   mutable std::mutex mutex_;  // of what follows
-  CalibratingStatus status_;
+  SessionStatus status_;
   CalibrationGuide guide_;  // changed by the thread alone
 
   BoundedQueue<std::function<void()>> wishes_{1000, WhenFull::kWait};
   Worker thread_;  // last: it uses all of the above
 };
 
-}  // namespace duo::app::view
+}  // namespace duo

@@ -1,4 +1,4 @@
-// The search for cameras, beside the window: a device that does not answer must not hold the window up.
+// The search for cameras in a thread of its own: a device that does not answer must not hold a window up.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@
 #include "duoptic/cameras.h"
 #include "duoptic/worker.h"
 
-namespace duo::app::view {
+namespace [[gnu::visibility("default")]] duo {
 
 /// Searches while it lives, every two seconds: cameras are plugged in and out.
 class CameraSearch {
@@ -37,4 +37,4 @@ class CameraSearch {
   Worker worker_;
 };
 
-}  // namespace duo::app::view
+}  // namespace duo

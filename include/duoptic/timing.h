@@ -2,16 +2,18 @@
 #pragma once
 
 #include <ctime>
+#include <utility>
 #include <vector>
 
 #include "duoptic/statistics.h"
 
-namespace duo::app {
+namespace [[gnu::visibility("default")]] duo {
 
 struct Times {
   double wall_ms = 0, cpu_ms = 0;  // CPU: of all threads of the process
 };
 
+/// Of one of the system's clocks.
 inline double clock_ms(clockid_t id) {
   timespec t{};
   clock_gettime(id, &t);
@@ -26,15 +28,14 @@ Times timed(F&& call) {
 }
 
 /// The median; 0 of nothing.
-inline double median(std::vector<double> values) { return values.empty() ? 0 : duo::median(values); }
-
-inline Times median(const std::vector<Times>& runs) {
+inline double median_of(std::vector<double> values) { return values.empty() ? 0 : median(values); }
+inline Times median_of(const std::vector<Times>& runs) {
   std::vector<double> wall, cpu;
   for (const Times& t : runs) {
     wall.push_back(t.wall_ms);
     cpu.push_back(t.cpu_ms);
   }
-  return {median(wall), median(cpu)};
+  return {median_of(std::move(wall)), median_of(std::move(cpu))};
 }
 
-}  // namespace duo::app
+}  // namespace duo

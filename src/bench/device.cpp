@@ -1,30 +1,30 @@
-#include "bench_device.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
+#include "bench/bench_lines.h"
+#include "bench/choices.h"
 #include "duoptic/devices.h"
 #include "duoptic/engine.h"
 #include "duoptic/tracker.h"
-#include "timing.h"
 
-namespace duo::app::bench {
+namespace duo {
 namespace {
 
-struct Stage {
+struct DeviceStage {
   std::string name;
   std::vector<double> ms;
 };
 
 /// One choice of matcher, preset and wants on a device.
-struct Run {
+struct DeviceRun {
   std::string name;
   std::vector<double> latency_ms, gpu_ms;
   double own_cpu_ms = 0;  // of the calling thread: packing, submitting, waiting, unpacking
   double frames_per_s = 0;
   std::size_t bytes_up = 0, bytes_down = 0;
-  std::vector<Stage> stages;
+  std::vector<DeviceStage> stages;
 };
 
 template <class T>
@@ -38,7 +38,7 @@ std::size_t bytes_of(const Frame& f) {
 }
 
 /// Of a frame, and of the look at it.
-void add_stages(const Frame& frame, std::span<const StageTime> look, Run& run) {
+void add_stages(const Frame& frame, std::span<const StageTime> look, DeviceRun& run) {
   double sum_ms = 0;
   std::size_t n = 0;
   const auto add = [&](const StageTime& stage) {
@@ -84,8 +84,8 @@ double frames_per_s(Engine& engine, Tracker* tracker, const Pair& pair, int fram
   return frames * 1e3 / (clock_ms(CLOCK_MONOTONIC) - begin_ms);
 }
 
-Result<Run> measure(Engine& engine, const Setup& setup, const Pair& pair, int repeat, std::string name) {
-  Run run;
+Result<DeviceRun> measure_on_device(Engine& engine, const Setup& setup, const Pair& pair, int repeat, std::string name) {
+  DeviceRun run;
   run.name = std::move(name);
   DUO_TRY(engine.prepare(setup));
   const auto once = [&] {
@@ -108,18 +108,18 @@ Result<Run> measure(Engine& engine, const Setup& setup, const Pair& pair, int re
     cpu_ms.push_back(clock_ms(CLOCK_THREAD_CPUTIME_ID) - cpu);
     add_stages(*frame, tracker != nullptr ? tracker->stages() : std::span<const StageTime>(), run);
   }
-  run.own_cpu_ms = median(cpu_ms);
+  run.own_cpu_ms = median_of(cpu_ms);
   run.frames_per_s = frames_per_s(engine, tracker.get(), pair, repeat);
   if (const std::string event = engine.take_event(); !event.empty()) return Error{ErrorCode::kDeviceLost, event};
   return run;
 }
 
-nlohmann::json json_of(const Run& run) {
+nlohmann::json bench_json(const DeviceRun& run) {
   nlohmann::json stages = nlohmann::json::array();
-  for (const Stage& stage : run.stages) stages.push_back({{"stage", stage.name}, {"gpu_ms", median(stage.ms)}});
+  for (const DeviceStage& stage : run.stages) stages.push_back({{"stage", stage.name}, {"gpu_ms", median_of(stage.ms)}});
   return {{"name", run.name},
-          {"latency_ms", median(run.latency_ms)},
-          {"gpu_ms", median(run.gpu_ms)},
+          {"latency_ms", median_of(run.latency_ms)},
+          {"gpu_ms", median_of(run.gpu_ms)},
           {"calling_thread_cpu_ms", run.own_cpu_ms},
           {"frames_per_s", run.frames_per_s},
           {"bytes_up", run.bytes_up},
@@ -127,52 +127,52 @@ nlohmann::json json_of(const Run& run) {
           {"stages", stages}};
 }
 
-void print(const Run& run) {
-  fmt::print("{:<33} {:9.2f} {:9.2f} {:9.2f} {:9.1f} {:8.2f} {:8.2f}  ", run.name, median(run.latency_ms), median(run.gpu_ms),
-             run.own_cpu_ms, run.frames_per_s, static_cast<double>(run.bytes_up) * 1e-6,
-             static_cast<double>(run.bytes_down) * 1e-6);
-  for (const Stage& stage : run.stages) fmt::print("{} {:.2f}  ", stage.name, median(stage.ms));
-  fmt::print("\n");
+void say_run(const DeviceRun& run, const SayLine& say) {
+  std::string line = fmt::format("{:<33} {:9.2f} {:9.2f} {:9.2f} {:9.1f} {:8.2f} {:8.2f}  ", run.name,
+                                 median_of(run.latency_ms), median_of(run.gpu_ms), run.own_cpu_ms, run.frames_per_s,
+                                 static_cast<double>(run.bytes_up) * 1e-6, static_cast<double>(run.bytes_down) * 1e-6);
+  for (const DeviceStage& stage : run.stages) line += fmt::format("{} {:.2f}  ", stage.name, median_of(stage.ms));
+  say(line + "\n");
 }
 
 }  // namespace
 
-Result<nlohmann::json> device_table(const DeviceBench& what) {
-  DUO_TRY_ASSIGN(const auto engine, make_engine(what.engine, 1));
+Result<std::string> bench_device(const SyntheticPair& input, const std::string& engine_name, int repeat, const SayLine& say) {
+  DUO_TRY_ASSIGN(const auto engine, make_engine(engine_name, 1));
   DUO_TRY_ASSIGN(const DeviceSpeed speed, measure_device(engine->device()));
-  const Size size = what.input->pair.left.pixels.size();
+  const Size size = input.pair.left.pixels.size();
   nlohmann::json out = {{"device", engine->device()},     {"width", size.width},      {"height", size.height},
                         {"copy_gb_s", speed.copy_gb_s},   {"up_gb_s", speed.up_gb_s}, {"down_gb_s", speed.down_gb_s},
                         {"ours", nlohmann::json::array()}};
-  if (!what.json)
-    fmt::print(
-        "\n{}x{}, {} disparities, {}: copies {:.1f} GB/s on the device, {:.1f} up, {:.1f} down\n{:<33} {:>9} {:>9} {:>9} {:>9} "
-        "{:>8} {:>8}  {}\n",
-        size.width, size.height, what.max_disparity, engine->device(), speed.copy_gb_s, speed.up_gb_s, speed.down_gb_s, "",
-        "latency", "GPU ms", "CPU ms", "frames/s", "MB up", "MB down", "stages, ms");
+  say_format(
+      say,
+      "\n{}x{}, {} disparities, {}: copies {:.1f} GB/s on the device, {:.1f} up, {:.1f} down\n{:<33} {:>9} {:>9} {:>9} {:>9} "
+      "{:>8} {:>8}  {}\n",
+      size.width, size.height, kBenchDisparities, engine->device(), speed.copy_gb_s, speed.up_gb_s, speed.down_gb_s, "",
+      "latency", "GPU ms", "CPU ms", "frames/s", "MB up", "MB down", "stages, ms");
   struct Sent {
     const char* name;
     bool maps, on_device;
   };
-  for (const auto& [matcher, preset] : what.choices)
+  for (const auto& [matcher, preset] : kBenchChoices)
     for (const auto& [sent, maps, on_device] :
          {Sent{"", false, false}, {", tracked", false, true}, {", all maps, filled", true, false}}) {
       Setup setup;
       setup.size = size;
-      setup.rig = what.input->rig;
+      setup.rig = input.rig;
       setup.matcher = matcher;
       setup.preset = preset;
-      setup.max_disparity = what.max_disparity;
+      setup.max_disparity = kBenchDisparities;
       setup.fill = maps;  // on the CPU, so not of frames that stay on the device
       setup.wants = {
           .color = maps, .depth = maps, .confidence = false, .views = maps, .disparity = maps, .on_device = on_device};
       setup.time_stages = true;
-      DUO_TRY_ASSIGN(const Run run,
-                     measure(*engine, setup, what.input->pair, what.repeat, fmt::format("{} {}{}", matcher, preset, sent)));
-      out["ours"].push_back(json_of(run));
-      if (!what.json) print(run), std::fflush(stdout);
+      DUO_TRY_ASSIGN(const DeviceRun run,
+                     measure_on_device(*engine, setup, input.pair, repeat, fmt::format("{} {}{}", matcher, preset, sent)));
+      out["ours"].push_back(bench_json(run));
+      say_run(run, say);
     }
-  return out;
+  return out.dump();
 }
 
-}  // namespace duo::app::bench
+}  // namespace duo

@@ -1,4 +1,4 @@
-// A pipeline in a thread of its own, as its viewer wishes.
+// A pipeline in a thread of its own, played, paused, sought and recorded as its viewer wishes.
 #pragma once
 
 #include <functional>
@@ -11,26 +11,22 @@
 #include "duoptic/bounded_queue.h"
 #include "duoptic/pipeline.h"
 #include "duoptic/rig_health.h"
+#include "duoptic/sink_kinds.h"
 #include "duoptic/skew_watch.h"
 #include "duoptic/worker.h"
-#include "input.h"
-#include "sink_options.h"
-#include "tracking_options.h"
 
-namespace duo::app::view {
+namespace [[gnu::visibility("default")]] duo {
 
-struct PlayerOptions {
-  std::string left, right;
-  std::optional<Rig> rig;
-  InputOptions input;
-  TrackingOptions tracking;
-  SinkOptions sinks;
-  RigCheck check = RigCheck::kTell;
+struct PlayerSetup {
+  PipelineSetup pipeline = {};               // with a tracker
+  std::function<Result<Input>()> open = {};  // the source: again for each start
+  SinkTargets sinks = {};
   bool loop = false;
-  std::function<void()> on_news;  // called in the player's thread when there is something new to show
+  std::function<void()> on_news = [] {};  // called in the player's thread when there is something new to show
+  std::function<void(const std::string&)> say = [](const std::string&) {};  // a line of what there is to know
 };
 
-/// One instant, for the window to keep.
+/// One instant, for who shows it to keep.
 struct Shown {
   std::int64_t number = 0;
   double t_s = 0;
@@ -72,10 +68,12 @@ struct PlayerStatus {
 /// Threads  any; what is asked for happens between two frames
 class Player {
  public:
-  /// `input`: what the options name.
+  /// `pairs`: what setup.open() gave the first time.
   ///
   /// Errors  those of Pipeline::open() and of the outputs
-  static Result<std::unique_ptr<Player>> open(const PlayerOptions& options, Input input, const CLI::App& app);
+  static Result<std::unique_ptr<Player>> open(PlayerSetup setup, std::unique_ptr<PairSource> pairs);
+  Player(const Player&) = delete;
+  Player& operator=(const Player&) = delete;
   ~Player();
 
   const TrackHeader& header() const { return pipeline_->header(); }
@@ -108,15 +106,15 @@ class Player {
   /// Looks at the last pair for what the rig is worth; takes a second or so beside the playing.
   void check_rig();
 
-  /// Ends the playing and completes outputs and recording. Call it once.
+  /// Ends the playing and completes outputs and recording. Call it once. Gives kCut where a file was cut short, else kEnd.
   ///
   /// Errors  what ended the playing before its time; outputs or recordings that could not be written
-  Result<Exit> finish();
+  Result<Next> finish();
   /// After finish(): why the stream ended before its files did; empty when it did not.
   const std::string& warning() const { return warning_; }
 
  private:
-  Player(PlayerOptions options, const CLI::App& app) : options_(std::move(options)), app_(app) {}
+  explicit Player(PlayerSetup setup) : setup_(std::move(setup)) {}
   void post(std::function<void()> wish) { wishes_.put(wish); }
   Result<void> run(const std::stop_token& stop);
   std::optional<double> due_in_ms() const;
@@ -128,8 +126,7 @@ class Player {
   void fail(const Error& error, bool for_good);
   bool resting() const;
 
-  PlayerOptions options_;
-  const CLI::App& app_;
+  PlayerSetup setup_;
   Rig rig_;
   bool still_ = false;
   std::int64_t count_ = 0;
@@ -155,4 +152,4 @@ class Player {
   Worker checking_, thread_;                                           // last: they use all of the above
 };
 
-}  // namespace duo::app::view
+}  // namespace duo

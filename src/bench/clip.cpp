@@ -1,16 +1,16 @@
-#include "bench_chain.h"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
-#include "duoptic/evaluation.h"
-#include "timing.h"
-#include "tracking_options.h"
+#include "bench/bench_lines.h"
+#include "duoptic/calibrate.h"
+#include "duoptic/pipeline.h"
 
-namespace duo::app::bench_chain {
+namespace duo {
 namespace {
 
 namespace fs = std::filesystem;
@@ -57,26 +57,26 @@ class LinesFile {
 };
 
 /// A stage, or the parts that stages belong to.
-struct Part {
+struct ClipPart {
   std::string name, of;  // of: "" for a part
   double cpu_ms = 0;     // a frame
   double bytes = 0;      // that a part hands on, a frame; of stages 0
 };
 
-struct Clip {
+struct BenchClip {
   fs::path folder;
   Rig rig;
   PipelineSetup setup;
 };
 
-struct Run {
-  std::vector<Part> parts;
+struct ClipRun {
+  std::vector<ClipPart> parts;
   Times whole;  // of all frames
   int frames = 0;
   bool focus = false;  // around people
 };
 
-std::size_t bytes_of(const Frame& frame) {
+std::size_t map_bytes_of(const Frame& frame) {
   const auto of = []<class T>(const Image<T>& map) {
     return static_cast<std::size_t>(map.width()) * static_cast<std::size_t>(map.height()) * sizeof(T);
   };
@@ -84,13 +84,13 @@ std::size_t bytes_of(const Frame& frame) {
          of(frame.disparity.d_q4) + of(frame.disparity.origin) + of(frame.confidence) + of(frame.depth_mm);
 }
 
-Part& part_of(std::vector<Part>& parts, const std::string& name, const std::string& of) {
-  for (Part& part : parts)
+ClipPart& part_of(std::vector<ClipPart>& parts, const std::string& name, const std::string& of) {
+  for (ClipPart& part : parts)
     if (part.name == name && part.of == of) return part;
-  return parts.emplace_back(Part{name, of});
+  return parts.emplace_back(ClipPart{name, of});
 }
 
-double add_stages(std::span<const StageTime> stages, const char* of, std::vector<Part>& parts) {
+double add_cpu_stages(std::span<const StageTime> stages, const char* of, std::vector<ClipPart>& parts) {
   double sum_ms = 0;
   for (const StageTime& stage : stages) {
     if (stage.wall_ns == 0) break;
@@ -102,8 +102,8 @@ double add_stages(std::span<const StageTime> stages, const char* of, std::vector
 }
 
 /// The clip from its first frame to its last, in turn where the setup says so.
-Result<Run> run_clip(const Clip& clip, const PipelineSetup& setup) {
-  Run out;
+Result<ClipRun> run_clip(const BenchClip& clip, const PipelineSetup& setup) {
+  ClipRun out;
   LinesFile lines;
   if (!lines.there()) return Error{ErrorCode::kExhausted, "cannot measure writing: no folder for temporary files"};
   double decode_ms = 0, next_ms = 0, write_ms = 0, engine_ms = 0, tracker_ms = 0, maps_bytes = 0, people_bytes = 0;
@@ -113,16 +113,16 @@ Result<Run> run_clip(const Clip& clip, const PipelineSetup& setup) {
   out.focus = pipeline.header().focus;
   DUO_TRY_ASSIGN(auto sink, make_json_lines(lines.path(), pipeline.header()));
   DUO_TRY(pipeline.add_sink("lines", std::move(sink)));
-  std::vector<Part> stages;
+  std::vector<ClipPart> stages;
   Result<Next> next = Next::kNew;
   Result<void> written;
   out.whole = timed([&] {
     while (true) {
       next_ms += timed([&] { next = pipeline.next(); }).cpu_ms;
       if (!next || *next != Next::kNew) return;
-      engine_ms += add_stages(pipeline.frame()->stages, "engine", stages);
-      tracker_ms += add_stages(pipeline.tracker()->stages(), "tracker", stages);
-      maps_bytes += static_cast<double>(bytes_of(*pipeline.frame()));
+      engine_ms += add_cpu_stages(pipeline.frame()->stages, "engine", stages);
+      tracker_ms += add_cpu_stages(pipeline.tracker()->stages(), "tracker", stages);
+      maps_bytes += static_cast<double>(map_bytes_of(*pipeline.frame()));
       people_bytes += static_cast<double>(pipeline.people().size_bytes());
       write_ms += timed([&] { written = pipeline.write(); }).cpu_ms;
       if (!written) return;
@@ -139,68 +139,68 @@ Result<Run> run_clip(const Clip& clip, const PipelineSetup& setup) {
                {"lines", "", write_ms, static_cast<double>(fs::file_size(lines.path()))},
                {"other", "", next_ms - decode_ms - engine_ms - tracker_ms, 0}};
   out.parts.insert(out.parts.end(), stages.begin(), stages.end());
-  for (Part& part : out.parts) part.cpu_ms /= out.frames, part.bytes /= out.frames;
+  for (ClipPart& part : out.parts) part.cpu_ms /= out.frames, part.bytes /= out.frames;
   return out;
 }
 
 /// Medians of what several runs measured of the same parts.
-std::vector<Part> median_of(const std::vector<Run>& runs) {
-  std::vector<Part> out = runs[0].parts;
-  for (Part& part : out) {
+std::vector<ClipPart> median_parts(const std::vector<ClipRun>& runs) {
+  std::vector<ClipPart> out = runs[0].parts;
+  for (ClipPart& part : out) {
     std::vector<double> cpu_ms;
-    for (const Run& run : runs) {
-      std::vector<Part> parts = run.parts;
+    for (const ClipRun& run : runs) {
+      std::vector<ClipPart> parts = run.parts;
       cpu_ms.push_back(part_of(parts, part.name, part.of).cpu_ms);
     }
-    part.cpu_ms = median(std::move(cpu_ms));
+    part.cpu_ms = median_of(std::move(cpu_ms));
   }
   return out;
 }
 
-nlohmann::json to_json(const std::vector<Part>& parts) {
+nlohmann::json bench_json(const std::vector<ClipPart>& parts) {
   nlohmann::json out = nlohmann::json::array();
-  for (const Part& part : parts) {
+  for (const ClipPart& part : parts) {
     if (!part.of.empty()) continue;
     nlohmann::json stages = nlohmann::json::array();
-    for (const Part& stage : parts)
+    for (const ClipPart& stage : parts)
       if (stage.of == part.name) stages.push_back({{"stage", stage.name}, {"cpu_ms", stage.cpu_ms}});
     out.push_back({{"part", part.name}, {"cpu_ms", part.cpu_ms}, {"bytes", part.bytes}, {"stages", stages}});
   }
   return out;
 }
 
-void print(const nlohmann::json& table) {
-  fmt::print("\n{}: {} pairs of {}x{}, engine {}{}; a frame, one thread, one part after the other\n",
+void say_clip(const nlohmann::json& table, const SayLine& say) {
+  say_format(say, "\n{}: {} pairs of {}x{}, engine {}{}; a frame, one thread, one part after the other\n",
              table["clip"].get<std::string>(), table["frames"].get<int>(), table["width"].get<int>(),
              table["height"].get<int>(), table["engine"].get<std::string>(),
              table["focus"].get<bool>() ? ", around people" : "");
-  fmt::print("{:<22} {:>8} {:>10}\n", "", "CPU ms", "kB handed on");
+  say_format(say, "{:<22} {:>8} {:>10}\n", "", "CPU ms", "kB handed on");
   double all_ms = 0;
   for (const auto& part : table["parts"]) {
     const double cpu_ms = part["cpu_ms"].get<double>(), bytes = part["bytes"].get<double>();
     all_ms += cpu_ms;
-    fmt::print("{:<22} {:8.2f} {:>10}\n", part["part"].get<std::string>(), cpu_ms,
+    say_format(say, "{:<22} {:8.2f} {:>10}\n", part["part"].get<std::string>(), cpu_ms,
                bytes > 0 ? fmt::format("{:.1f}", bytes * 1e-3) : std::string());
     for (const auto& stage : part["stages"])
-      fmt::print("  {:<20} {:8.2f}\n", stage["stage"].get<std::string>(), stage["cpu_ms"].get<double>());
+      say_format(say, "  {:<20} {:8.2f}\n", stage["stage"].get<std::string>(), stage["cpu_ms"].get<double>());
   }
-  fmt::print("{:<22} {:8.2f}\n", "all", all_ms);
+  say_format(say, "{:<22} {:8.2f}\n", "all", all_ms);
   for (const auto& run : table["track"])
-    fmt::print("track, {} thread{}: {:.1f} frames/s, {:.1f} ms of CPU time a frame, {:.2f} cores busy\n",
+    say_format(say, "track, {} thread{}: {:.1f} frames/s, {:.1f} ms of CPU time a frame, {:.2f} cores busy\n",
                run["threads"].get<int>(), run["threads"] == 1 ? "" : "s", run["frames_per_s"].get<double>(),
                run["cpu_ms"].get<double>(), run["cores_busy"].get<double>());
 }
 
-Result<nlohmann::json> chain_table(const Clip& clip, const What& what) {
+Result<nlohmann::json> clip_table(const BenchClip& clip, int repeat) {
   constexpr std::array kThreads = {1, 2};
   PipelineSetup alone = clip.setup;
   alone.threads = 1;
   alone.in_turn = true;
   alone.frames.time_stages = true;
-  std::vector<Run> parts;
-  std::array<std::vector<Run>, kThreads.size()> tracked;
-  for (int r = 0; r < what.repeat; ++r) {
-    DUO_TRY_ASSIGN(Run run, run_clip(clip, alone));
+  std::vector<ClipRun> parts;
+  std::array<std::vector<ClipRun>, kThreads.size()> tracked;
+  for (int r = 0; r < repeat; ++r) {
+    DUO_TRY_ASSIGN(ClipRun run, run_clip(clip, alone));
     parts.push_back(std::move(run));
     for (std::size_t i = 0; i < kThreads.size(); ++i) {
       PipelineSetup setup = clip.setup;
@@ -214,8 +214,8 @@ Result<nlohmann::json> chain_table(const Clip& clip, const What& what) {
   nlohmann::json runs = nlohmann::json::array();
   for (std::size_t i = 0; i < kThreads.size(); ++i) {
     std::vector<Times> whole;
-    for (const Run& run : tracked[i]) whole.push_back(run.whole);
-    const Times t = median(whole);
+    for (const ClipRun& run : tracked[i]) whole.push_back(run.whole);
+    const Times t = median_of(whole);
     const double frames = parts[0].frames;
     runs.push_back({{"threads", kThreads[i]},
                     {"frames_per_s", 1000 * frames / t.wall_ms},
@@ -226,30 +226,28 @@ Result<nlohmann::json> chain_table(const Clip& clip, const What& what) {
                         {"frames", parts[0].frames},
                         {"width", clip.rig.left.size.width},
                         {"height", clip.rig.left.size.height},
-                        {"engine", what.engine},
+                        {"engine", clip.setup.engine},
                         {"focus", parts[0].focus},
-                        {"parts", to_json(median_of(parts))},
+                        {"parts", bench_json(median_parts(parts))},
                         {"track", runs}};
 }
 
 }  // namespace
 
-Result<nlohmann::json> tables(const What& what) {
-  nlohmann::json out = nlohmann::json::array();
-  for (const std::string& folder : what.clips) {
-    Clip clip{folder, {}, {}};
-    DUO_TRY_ASSIGN(clip.rig, load_rig((clip.folder / "calibration_truth.yml").string()));
-    TrackingOptions tracking;
-    tracking.tracker = "body";
-    tracking.focus = what.whole ? PeopleFocus::kOff : PeopleFocus::kWherePossible;
-    tracking.engine.engine = what.engine;
-    DUO_TRY_ASSIGN(clip.setup, tracking.setup({nullptr, clip.rig, {folder + "/left.avi", folder + "/right.avi"}}));
-    DUO_TRY_ASSIGN(nlohmann::json table, chain_table(clip, what));
-    if (!what.json) print(table);
-    std::fflush(stdout);
-    out.push_back(std::move(table));
-  }
-  return out;
+Result<std::string> bench_clip(const fs::path& folder, const std::string& engine, bool whole, int repeat, const SayLine& say) {
+  BenchClip clip{folder, {}, {}};
+  DUO_TRY_ASSIGN(clip.rig, load_rig(folder / "calibration_truth.yml"));
+  PipelineSetup& setup = clip.setup;
+  setup.names = {(folder / "left.avi").string(), (folder / "right.avi").string()};
+  setup.engine = engine;
+  setup.tracker = "body";
+  setup.focus = whole ? PeopleFocus::kOff : PeopleFocus::kWherePossible;
+  setup.frames.rig = clip.rig;
+  setup.frames.wants = {.color = false, .views = false, .disparity = false};
+  DUO_TRY_ASSIGN(setup.frames.max_disparity, disparities_for_people(clip.rig));
+  DUO_TRY_ASSIGN(const nlohmann::json table, clip_table(clip, repeat));
+  say_clip(table, say);
+  return table.dump();
 }
 
-}  // namespace duo::app::bench_chain
+}  // namespace duo

@@ -1,48 +1,51 @@
-#include "player.h"
+#include "duoptic/player.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <ctime>
 #include <filesystem>
 
+#include "core/check.h"
+#include "core/clock.h"
 #include "duoptic/one_pair.h"
-#include "rig_report.h"
-#include "timing.h"
 
-namespace duo::app::view {
+namespace duo {
 namespace {
 
 /// "duoptic_2026-05-31_14-03-59.mkv" in the working folder, by the user's time; a name that no file has.
 std::string dated_name(const std::string& ending) {
-  const std::string stem = fmt::format("duoptic_{:%Y-%m-%d_%H-%M-%S}", fmt::localtime(std::time(nullptr)));
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  std::array<char, 64> stem_text{};
+  std::strftime(stem_text.data(), stem_text.size(), "duoptic_%Y-%m-%d_%H-%M-%S", &local);
+  const std::string stem = stem_text.data();
   std::error_code ignored;
   std::string name = stem + ending;
   for (int i = 2; std::filesystem::exists(name, ignored); ++i) name = fmt::format("{}_{}{}", stem, i, ending);
   return name;
 }
 
-double now_ms() { return clock_ms(CLOCK_MONOTONIC); }
+double now_ms() { return static_cast<double>(wall_ns()) * 1e-6; }
 
 }  // namespace
 
-Result<std::unique_ptr<Player>> Player::open(const PlayerOptions& options, Input input, const CLI::App& app) {
-  std::unique_ptr<Player> player(new Player(options, app));
-  TrackingOptions tracking = options.tracking.or_tracker("body");
-  tracking.all_maps = true;
-  DUO_TRY_ASSIGN(PipelineSetup setup, tracking.setup(input));
-  setup.frames.wants.depth = true;  // for who saves what is shown
-  setup.check = options.check;
-  DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(input.pairs), std::move(setup)));
+Result<std::unique_ptr<Player>> Player::open(PlayerSetup setup, std::unique_ptr<PairSource> pairs) {
+  DUO_CHECK(!setup.pipeline.tracker.empty());
+  std::unique_ptr<Player> player(new Player(std::move(setup)));
+  DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(pairs), std::move(player->setup_.pipeline)));
   player->rig_ = *pipeline.setup().rig;
   player->skew_ = SkewWatch(pipeline.header().rectified.baseline_m);
   player->still_ = pipeline.still();
   player->count_ = pipeline.count();
-  player->status_.loop = options.loop;
-  DUO_TRY(options.sinks.add_sinks(pipeline, app));
-  for (const auto& names : options.sinks.targets)
+  player->status_.loop = player->setup_.loop;
+  const SinkTargets& sinks = player->setup_.sinks;
+  DUO_TRY_ASSIGN(const auto notes, sinks.add_all_to(pipeline));
+  for (const std::string& note : notes) player->setup_.say("warning: " + note);
+  for (const auto& names : sinks.targets)
     player->status_.outputs.push_back({names.empty() ? "" : names.back(), !names.empty(), 0});
   player->pipeline_.emplace(std::move(pipeline));
   DUO_TRY_ASSIGN(player->thread_,
@@ -166,7 +169,7 @@ void Player::put_out(std::size_t kind, bool on, const std::string& target) {
     if (on == output.on) return;
     if (on) {
       output = {what.is_file() ? dated_name(what.target) : target, true, 0};
-      const auto added = options_.sinks.add_sink(*pipeline_, what, output.name);
+      const auto added = setup_.sinks.add_to(*pipeline_, what, output.name);
       if (!added) return fail(added.error(), false);
       const std::lock_guard lock(mutex_);
       status_.problem = *added;
@@ -196,7 +199,7 @@ void Player::check_rig() {
         status_.health = std::move(health);
         status_.checking_rig = false;
       }
-      options_.on_news();
+      setup_.on_news();
       return {};
     });
     if (checking) {
@@ -209,7 +212,7 @@ void Player::check_rig() {
   });
 }
 
-Result<Exit> Player::finish() {
+Result<Next> Player::finish() {
   thread_.ask_to_stop();
   wishes_.close();
   const Result<void> ended = thread_.join();
@@ -220,7 +223,7 @@ Result<Exit> Player::finish() {
   if (failed_) return *failed_;
   DUO_TRY(outputs);
   if (const auto failure = pipeline_->recording_failure()) return *failure;
-  return cut_ ? Exit::kCut : Exit::kOk;
+  return cut_ ? Next::kCut : Next::kEnd;
 }
 
 bool Player::resting() const {
@@ -248,7 +251,7 @@ Result<void> Player::run(const std::stop_token& stop) {
       advance();
     else
       continue;
-    options_.on_news();
+    setup_.on_news();
   }
   return {};
 }
@@ -257,7 +260,7 @@ Result<void> Player::run(const std::stop_token& stop) {
 void Player::advance() {
   const Result<Next> next = pipeline_->next();
   if (!next) return fail(next.error(), true);
-  say_rig_news(app_, *pipeline_);
+  if (const std::string& news = pipeline_->rig_news(); !news.empty()) setup_.say("warning: " + news);
   {
     const std::lock_guard lock(mutex_);
     if (const auto& fit = pipeline_->rig_fit()) status_.rig_news = fit->what;
@@ -310,7 +313,7 @@ bool Player::reopen(std::int64_t first) {
   pipeline_->stop_recording();
   pipeline_->close_source();  // before another: a file may be a device
   const auto restart = [this, first]() -> Result<void> {
-    DUO_TRY_ASSIGN(Input input, open_input(options_.left, options_.right, options_.rig, options_.input));
+    DUO_TRY_ASSIGN(Input input, setup_.open());
     return pipeline_->restart(std::move(input.pairs), first);
   };
   const Result<void> restarted = restart();
@@ -356,4 +359,4 @@ void Player::fail(const Error& error, bool for_good) {
   if (for_good) status_.state = PlayState::kEnded;
 }
 
-}  // namespace duo::app::view
+}  // namespace duo

@@ -1,17 +1,16 @@
-#include "bench_networks.h"
-
 #include <fmt/format.h>
 
 #include <chrono>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <thread>
 
+#include "bench/bench_lines.h"
 #include "duoptic/detector.h"
 #include "duoptic/network.h"
-#include "timing.h"
 
-namespace duo::app::bench {
+namespace duo {
 namespace {
 
 constexpr const char* kNetworks[] = {"person_detector", "body_lite", "body_full", "body_heavy", "hand_lite", "hand_full"};
@@ -21,11 +20,11 @@ struct Timed {
   bool has_peer = false;
 };
 
-Result<Timed> measure_network(const std::filesystem::path& path, const NetworksBench& what, int threads) {
-  DUO_TRY_ASSIGN(const auto ours, open_network(path, what.engine, threads));
+Result<Timed> measure_network(const std::filesystem::path& path, const std::string& engine, int repeat, int threads) {
+  DUO_TRY_ASSIGN(const auto ours, open_network(path, engine, threads));
   std::unique_ptr<Network> peer;
   // It refuses one of the layers of body_heavy.
-  if (has_xnnpack() && what.engine == "simd")
+  if (has_xnnpack() && engine == "simd")
     if (auto opened = open_network(path, "XNNPACK", threads)) peer = std::move(*opened);
   std::vector<Times> of_ours, of_peer;
   Result<void> ran;
@@ -41,32 +40,32 @@ Result<Timed> measure_network(const std::filesystem::path& path, const NetworksB
     for (const double end_ms = clock_ms(CLOCK_MONOTONIC) + 60; clock_ms(CLOCK_MONOTONIC) < end_ms;) run(network);
     return run(network);
   };
-  if (what.engine == "ref") of_ours.push_back(run(*ours));
-  for (int r = 0; r < what.repeat && what.engine != "ref"; ++r) {
+  if (engine == "ref") of_ours.push_back(run(*ours));
+  for (int r = 0; r < repeat && engine != "ref"; ++r) {
     of_ours.push_back(turn(*ours));
     if (peer) of_peer.push_back(turn(*peer));
   }
   DUO_TRY(ran);
-  return Timed{median(of_ours), median(of_peer), peer != nullptr};
+  return Timed{median_of(of_ours), median_of(of_peer), peer != nullptr};
 }
 
 }  // namespace
 
-Result<nlohmann::json> networks_table(const NetworksBench& what) {
+Result<std::string> bench_networks(const std::string& engine, int repeat, const SayLine& say_line) {
   nlohmann::json out = nlohmann::json::array();
   const auto say = [&]<class... T>(fmt::format_string<T...> text, T&&... values) {
-    if (!what.json) fmt::print(text, std::forward<T>(values)...);
+    say_format(say_line, text, std::forward<T>(values)...);
   };
   std::map<std::string, double> one_thread_ms;  // by network
   for (const int threads : {1, 2}) {
-    if (threads > 1 && what.engine != "simd") break;
+    if (threads > 1 && engine != "simd") break;
     say("\nnetworks, {}\n{:<22} {:>9} {:>9} {:>10}   XNNPACK: {:>9} {:>9} {:>6}\n",
-        what.engine == "simd" ? fmt::format("{} thread{}", threads, threads == 1 ? "" : "s") : what.engine, "", "wall ms",
-        "CPU ms", threads == 1 ? "" : "one thread", "wall ms", "CPU ms", "ratio");
+        engine == "simd" ? fmt::format("{} thread{}", threads, threads == 1 ? "" : "s") : engine, "", "wall ms", "CPU ms",
+        threads == 1 ? "" : "one thread", "wall ms", "CPU ms", "ratio");
     for (const char* name : kNetworks) {
       const std::filesystem::path path = models_folder() / (std::string(name) + ".net");
       if (!std::filesystem::exists(path)) continue;
-      DUO_TRY_ASSIGN(const Timed times, measure_network(path, what, threads));
+      DUO_TRY_ASSIGN(const Timed times, measure_network(path, engine, repeat, threads));
       nlohmann::json row = {
           {"name", name}, {"threads", threads}, {"wall_ms", times.ours.wall_ms}, {"cpu_ms", times.ours.cpu_ms}};
       say("{:<22} {:9.2f} {:9.2f}", name, times.ours.wall_ms, times.ours.cpu_ms);
@@ -83,12 +82,11 @@ Result<nlohmann::json> networks_table(const NetworksBench& what) {
         say("            {:9.2f} {:9.2f} {:6.2f}", times.peer.wall_ms, times.peer.cpu_ms, ratio);
       }
       say("\n");
-      if (!what.json) std::fflush(stdout);
       out.push_back(std::move(row));
     }
   }
   if (out.empty()) say("networks: none in {}\n", models_folder().string());
-  return out;
+  return out.dump();
 }
 
-}  // namespace duo::app::bench
+}  // namespace duo
