@@ -106,9 +106,11 @@ Result<av::DecodedFrame> decode(std::string_view bytes, const std::string& name,
   if (!decoder || !packet || !frame || av_new_packet(packet.get(), static_cast<int>(bytes.size())) < 0)
     return refused(AVERROR(ENOMEM));
   bytes.copy(reinterpret_cast<char*>(packet->data), bytes.size());
+  errno = 0;
   int outcome = avcodec_send_packet(decoder.get(), packet.get());
   if (outcome >= 0) avcodec_send_packet(decoder.get(), nullptr);
   if (outcome >= 0) outcome = avcodec_receive_frame(decoder.get(), frame.get());
+  if (outcome == AVERROR_EXTERNAL && errno == ENOMEM) outcome = AVERROR(ENOMEM);  // zlib's memory, of which libav does not tell
   if (outcome < 0 || av::is_damaged(*frame)) return refused(outcome);
   if (const std::string why = av::too_many_pixels({frame->width, frame->height}); !why.empty())
     return av::input_error(name, 0, why);
