@@ -154,6 +154,7 @@ struct DepthTruth {
 ///
 /// Errors  they are there and are no such pictures
 Result<DepthTruth> load_depth_truth(const std::filesystem::path& folder, std::int64_t frame);
+bool has_depth_truth(const std::filesystem::path& folder, std::int64_t frame);
 
 /// One joint in one frame: what is true of it, and what the tracker said.
 struct JointSample {

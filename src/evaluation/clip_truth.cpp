@@ -40,6 +40,11 @@ Error cannot_evaluate(const std::string& name, const std::string& why) {
   return {ErrorCode::kBadInput, fmt::format("cannot evaluate {}: {}", name, why)};
 }
 
+fs::path depth_path(const fs::path& folder, std::int64_t frame) { return folder / fmt::format("depth/depth_{:04}.png", frame); }
+fs::path figure_path(const fs::path& folder, std::int64_t frame) {
+  return folder / fmt::format("depth/figure_{:04}.png", frame);
+}
+
 }  // namespace
 
 Result<void> ClipTruth::check(JointId joint) const {
@@ -86,11 +91,14 @@ Result<ClipTruth> load_clip(const fs::path& folder) {
   return clip;
 }
 
+bool has_depth_truth(const fs::path& folder, std::int64_t frame) {
+  return fs::exists(depth_path(folder, frame)) && fs::exists(figure_path(folder, frame));
+}
+
 Result<DepthTruth> load_depth_truth(const fs::path& folder, std::int64_t frame) {
-  const fs::path depth = folder / fmt::format("depth/depth_{:04}.png", frame);
-  const fs::path figure = folder / fmt::format("depth/figure_{:04}.png", frame);
+  const fs::path depth = depth_path(folder, frame), figure = figure_path(folder, frame);
   DepthTruth truth;
-  if (!fs::exists(depth) || !fs::exists(figure)) return truth;
+  if (!has_depth_truth(folder, frame)) return truth;
   DUO_TRY_ASSIGN(truth.z_tenth_mm, read_png16(depth));
   DUO_TRY_ASSIGN(const Image<std::uint16_t> mask, read_png16(figure));
   if (mask.size() != truth.z_tenth_mm.size())

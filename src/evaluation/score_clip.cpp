@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "core/clock.h"
@@ -114,11 +115,43 @@ Result<Wanted> wanted(const Tracker& tracker, const ClipTruth& truth, std::vecto
   return out;
 }
 
+Result<std::unique_ptr<PairSource>> open_clip(const std::filesystem::path& folder, const ClipTruth& truth) {
+  return open_pairs(folder / "left.avi", folder / "right.avi", {.skew_ns = std::llround(truth.skew_ms * 1e6)});
+}
+
 std::vector<Selection> selections_in(const Wanted& want, const FrameTruth& frame, double jitter_px) {
   std::vector<Selection> selections;
   std::mt19937 random(1);
   for (const Skeleton* skeleton : want.skeletons) selections.push_back(clicks(*skeleton, frame, jitter_px, random));
   return selections;
+}
+
+/// Depth as it is made where no tracker asks for other fractions, of the frames from `first` on whose depth is known.
+Result<std::optional<DepthScore>> score_depth(const std::filesystem::path& folder, const ClipTruth& truth, PipelineSetup setup,
+                                              std::int64_t first) {
+  std::vector<std::int64_t> known;
+  for (std::int64_t i = first; i < static_cast<std::int64_t>(truth.frames.size()); ++i)
+    if (has_depth_truth(folder, i)) known.push_back(i);
+  if (known.empty()) return std::optional<DepthScore>();
+  setup.tracker.clear();
+  setup.focus = PeopleFocus::kOff;
+  setup.check = RigCheck::kNone;
+  setup.first = known[0];
+  setup.every = 0;
+  for (const std::int64_t i : known) setup.every = std::gcd(setup.every, i - known[0]);
+  if (setup.every == 0) setup.every = 1;
+  DUO_TRY_ASSIGN(auto pairs, open_clip(folder, truth));
+  const double frame_s = pairs->frame_s();
+  DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(pairs), std::move(setup)));
+  DepthTally tally;
+  for (std::int64_t i = -1; i < known.back();) {
+    DUO_TRY_ASSIGN(const Next next, pipeline.next());
+    if (next != Next::kNew) break;
+    i = std::llround(static_cast<double>(pipeline.pair()->left.t_ns) * 1e-9 / frame_s);
+    DUO_TRY_ASSIGN(const DepthTruth of_frame, load_depth_truth(folder, i));
+    tally.add(*pipeline.frame(), pipeline.header().rectified, truth.rig.left, of_frame);
+  }
+  return tally.score();
 }
 
 }  // namespace
@@ -131,16 +164,15 @@ Result<ClipScore> score_clip(const std::filesystem::path& folder, const ClipTrut
   score.clip = truth.name;
   score.tracker = setup.tracker;
   DUO_TRY_ASSIGN(score.first, truth.first_visible(want.clicked));
-  DUO_TRY_ASSIGN(auto pairs,
-                 open_pairs(folder / "left.avi", folder / "right.avi", {.skew_ns = std::llround(truth.skew_ms * 1e6)}));
+  DUO_TRY_ASSIGN(auto pairs, open_clip(folder, truth));
   const double frame_s = pairs->frame_s();
   setup.frames.many_at_once = false;  // other frames would be made while a frame is scored
   setup.frames.wants.disparity = true;
+  const PipelineSetup of_depth = setup;
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(pairs), std::move(setup), std::move(tracker)));
   const Rectified& rectified = pipeline.header().rectified;
   if (what.add_sinks) DUO_TRY(what.add_sinks(pipeline));
   std::vector<std::vector<JointSample>> samples(want.joints.size());
-  DepthTally depth;
   Identities identities;
   std::int64_t busy_ns = 0;  // without scoring, during which nothing goes on in the background
   const auto count = static_cast<std::int64_t>(truth.frames.size());
@@ -165,8 +197,6 @@ Result<ClipScore> score_clip(const std::filesystem::path& folder, const ClipTrut
     if (whole) identities.add(0, frame, pipeline.people(), rectified.rig_from_left);
     for (std::size_t k = 0; whole && k < truth.others.size(); ++k)
       identities.add(k + 1, truth.others[k][static_cast<std::size_t>(i)], pipeline.people(), rectified.rig_from_left);
-    DUO_TRY_ASSIGN(const DepthTruth depth_truth, load_depth_truth(folder, i));
-    depth.add(*pipeline.frame(), rectified, truth.rig.left, depth_truth);
     DUO_TRY(pipeline.write());
     ++score.frames;
   }
@@ -175,8 +205,8 @@ Result<ClipScore> score_clip(const std::filesystem::path& folder, const ClipTrut
   for (std::size_t j = 0; j < want.joints.size(); ++j) score.joints.emplace_back(want.joints[j], score_joint(samples[j]));
   score.people = 1 + static_cast<int>(truth.others.size());
   score.identity_switches = identities.switches();
-  score.depth = depth.score();
   DUO_TRY(pipeline.finish_sinks());
+  DUO_TRY_ASSIGN(score.depth, score_depth(folder, truth, of_depth, score.first));
   return score;
 }
 

@@ -15,6 +15,7 @@
 #include "pipeline/picture_watch.h"
 #include "pipeline/rig_watch.h"
 #include "pipeline/tap.h"
+#include "pipeline/tracked_setup.h"
 #include "sources/file_source.h"
 
 namespace duo {
@@ -57,26 +58,6 @@ struct Pipeline::State {
   Result<void> look_at_rig(Next next);
   void keep(std::span<const Person> found);
 };
-
-namespace {
-
-/// From one tracked frame to the next. Where frames are left out at will it stays below the second that trackers can bridge; a
-/// source that is that slow by itself is theirs to refuse.
-double tracked_frame_s(double frame_s, std::int64_t every) {
-  constexpr double kMost_s = 0.99;
-  return std::max(frame_s, std::min(frame_s * static_cast<double>(every), kMost_s));
-}
-
-void add_wants(const Wants& from, Wants& to) {
-  to.color |= from.color;
-  to.depth |= from.depth;
-  to.confidence |= from.confidence;
-  to.views |= from.views;
-  to.disparity |= from.disparity;
-  to.on_device |= from.on_device;
-}
-
-}  // namespace
 
 Result<void> Pipeline::State::prepare() {
   Setup& of_engine = setup.frames;
@@ -122,7 +103,8 @@ Result<void> Pipeline::State::prepare() {
   return prepare_tracker();
 }
 
-Result<void> Pipeline::State::prepare_engine(const Setup& of_engine) {
+Result<void> Pipeline::State::prepare_engine(const Setup& wanted) {
+  const Setup of_engine = tracker != nullptr ? setup_of_tracked(wanted) : wanted;
   if (frames) return frames->prepare(of_engine, last);  // each of its pairs comes with a focus
   DUO_TRY(engine->prepare(of_engine));
   if (header.focus) engine->focus({});  // from the first frame on

@@ -21,7 +21,7 @@ struct SgmParams {
   int speckle = 60;
   int speckle_step_q4 = 16;
   int smooth = 1;
-  int refine = 0;
+  int refine = 1;
 
   static constexpr int kMaxDisparity = 256;
   SemiGlobalParams semi_global() const;
@@ -46,8 +46,8 @@ inline constexpr Parameter<SgmParams> kSgmParameters[] = {
     {"speckle-step", &SgmParams::speckle_step_q4, "px/16", 1, 256, "neighbours within this difference are one island"},
     {"smooth", &SgmParams::smooth, "", 0, 1, "weighted median guided by the picture: 1 on, 0 off"},
     {"refine", &SgmParams::refine, "", 0, 2,
-     "last fraction of a pixel by gray gradients, in pictures that are not clear: 0 never, 1 where they were rectified "
-     "here from raw ones, 2 always"},
+     "last fraction of a pixel by gray gradients, in pictures that are not clear: 0 never, as where people are tracked, 1 "
+     "where they were rectified here from raw ones, 2 always"},
 };
 
 inline constexpr std::string_view kSgmPresets[] = {"default", "paths8"};
