@@ -114,7 +114,8 @@ class Pipeline {
   /// Before the first next(): only these windows matter; see Engine::look_at().
   void look_at(std::span<const Window> windows);
 
-  /// Adds an output. One of a live source that may have to wait gets a thread of its own.
+  /// Adds an output. One of a live source that may have to wait gets a thread of its own; one of files that wants no pictures
+  /// is given each frame up to two and a half seconds of the clip later, with the bones' lengths that were learnt meanwhile.
   ///
   /// Errors  the system gives no thread
   Result<void> add_sink(std::string name, std::unique_ptr<Sink> sink);

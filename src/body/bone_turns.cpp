@@ -127,15 +127,21 @@ std::optional<std::vector<Vec3>> known_places(const Person& person, const Mat3& 
     return joint != nullptr && joint->state != JointState::kLost;
   };
   using enum JointId;
+  // What carries a joint that is known is no limb that hangs: its place is poor, but goes with those lengths.
+  std::vector<bool> carries(person.count());
+  for (std::size_t j = person.count(); j-- > 1;)
+    if (carries[j] || person.joints[j].state != JointState::kLost)
+      carries[static_cast<std::size_t>(person.skeleton->joints[j].parent)] = true;
   const bool has_trunk = std::ranges::all_of(std::array{kPelvis, kSpine, kChest, kLeftShoulder, kRightShoulder}, known);
   std::vector<Vec3> out;
   for (std::size_t j = 0; j < person.count(); ++j) {
     const Joint& joint = person.joints[j];
-    if (joint.state != JointState::kLost) {
+    const bool lost = joint.state == JointState::kLost;
+    if (lost && !has_trunk) return std::nullopt;
+    if (!lost || carries[j]) {
       out.push_back(axes_from_rig * joint.p_in_rig_m);
       continue;
     }
-    if (!has_trunk) return std::nullopt;
     const Vec3 up = person.find(kChest)->p_in_rig_m - person.find(kPelvis)->p_in_rig_m;
     const Vec3 left = person.find(kLeftShoulder)->p_in_rig_m - person.find(kRightShoulder)->p_in_rig_m;
     if (!(norm(up) > 0) || !(norm(cross(left, up)) > 0)) return std::nullopt;

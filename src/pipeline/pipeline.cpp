@@ -16,6 +16,7 @@
 #include "pipeline/rig_watch.h"
 #include "pipeline/tap.h"
 #include "pipeline/tracked_setup.h"
+#include "sinks/settled_bones.h"
 #include "sources/file_source.h"
 
 namespace duo {
@@ -215,7 +216,6 @@ Result<Next> Pipeline::next() {
 }
 
 void Pipeline::wait() { state_->frames->wait(); }
-
 const std::shared_ptr<const Frame>& Pipeline::frame() const { return state_->last.frame; }
 const std::shared_ptr<const Pair>& Pipeline::pair() const { return state_->pair; }
 std::span<const Person> Pipeline::people() const { return state_->people; }
@@ -275,6 +275,7 @@ Result<void> Pipeline::add_sink(std::string name, std::unique_ptr<Sink> sink) {
   if (live() && !sink->instant()) {
     DUO_TRY_ASSIGN(sink, in_background(std::move(sink)));
   }
+  if (!live() && state_->tracker) sink = with_settled_bones(std::move(sink), state_->setup.frames.rig, state_->header.rectified);
   state_->sinks.push_back({std::move(name), std::move(sink)});
   return {};
 }

@@ -27,12 +27,13 @@ target_sources(duoptic PRIVATE
   ${dir}/ply.cpp
   ${dir}/png.cpp
   ${dir}/recorder.cpp
+  ${dir}/settled_bones.cpp
   ${dir}/trc.cpp
   ${dir}/video_writer.cpp
   ${dir}/vmc.cpp)
 duoptic_test(sinks/files ${dir}/files_test.cpp)
 duoptic_test(sinks/frame_files ${dir}/frame_files_test.cpp)
-duoptic_test(sinks/tracked_frames ${dir}/tracked_frames_test.cpp)
+duoptic_test(sinks/tracked_frames ${dir}/tracked_frames_test.cpp ${dir}/settled_bones_test.cpp)
 duoptic_test(sinks/other_programs ${dir}/motion_files_test.cpp ${dir}/osc_test.cpp ${dir}/mcap/mcap_test.cpp)
 duoptic_test(sinks/recorder ${dir}/recorder_test.cpp ${dir}/recorder_names_test.cpp)
 if(DUO_TESTS)

@@ -255,7 +255,8 @@ void complete(Places& places) {
   places[kPelvis] = middle(places[kLeftHip], places[kRightHip]);
   places[kChest] = middle(places[kLeftShoulder], places[kRightShoulder]);
   const Vec3 up = places[kChest] - places[kPelvis], back = cross(up, places[kLeftShoulder] - places[kRightShoulder]);
-  places[kSpine] = places[kPelvis] + 0.5 * across(kLeftHip, kRightHip, up);
+  const Vec3 upright = across(kLeftHip, kRightHip, up);
+  places[kSpine] = places[kPelvis] + (0.5 * norm(up) / std::max(norm(upright), 1e-6)) * upright;
   const Vec3 above = across(kLeftShoulder, kRightShoulder, up);
   places[kNeck] = places[kChest] + (kNeckAbove * norm(up) / std::max(norm(above), 1e-6)) * above +
                   (kNeckBehind_m / std::max(norm(back), 1e-6)) * back;
