@@ -74,7 +74,7 @@ python-bench: setup-test
 	@PYTHONPATH=build/release/python /usr/bin/python3 python/tests/throughput.py build/release/duoptic
 
 # The networks' bits to the letter: eight pictures per network on every Vulkan device and subgroup size, a whole clip in a closed loop on
-# plain loops, all instruction sets and Vulkan. On a software driver about an hour.
+# plain loops, all instruction sets and Vulkan. On a software driver about a quarter of an hour.
 networks: setup-test
 	@cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DDUO_TESTS=ON >/dev/null
 	@cmake --build build/release --target nets_vk_test detectors_vk_test nets_test detectors_test
