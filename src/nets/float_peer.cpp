@@ -1,15 +1,64 @@
 #include "nets/float_peer.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
+#include <hwy/targets.h>
 #include <xnnpack.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "core/check.h"
 
 namespace duo {
 namespace {
+
+#if HWY_ARCH_X86_64
+/// What cpuinfo, which XNNPACK asks, knows of the processor: bytes of 0 or 1 in an order of its own, whose header Debian leaves
+/// out.
+class KnownInstructions {
+ public:
+  KnownInstructions() {
+    const auto initialize = reinterpret_cast<bool (*)()>(dlsym(RTLD_DEFAULT, "cpuinfo_initialize"));
+    auto* const bytes = static_cast<std::uint8_t*>(dlsym(RTLD_DEFAULT, "cpuinfo_isa"));
+    if (initialize != nullptr && bytes != nullptr && initialize() && is_as_known(bytes)) bytes_ = bytes;
+  }
+  bool found() const { return bytes_ != nullptr; }
+  void forget_avx512() { std::memset(bytes_ + kAvx512, 0, kAvx512Count); }
+  void forget_avx() { std::memset(bytes_ + kAvx, 0, kAvx512 - kAvx), forget_avx512(); }
+
+ private:
+  // AVX, FMA3, FMA4, XOP, F16C, AVX2; then AVX-512: F, PF, ER, CD, DQ, BW, VL, IFMA, VBMI, VBMI2, BITALG, VPOPCNTDQ, VNNI.
+  static constexpr int kAvx = 22, kAvx512 = 28, kAvx512Count = 13;
+  static bool is_as_known(const std::uint8_t* bytes) {
+    const auto is = [&](int at, bool supported) { return bytes[at] == static_cast<std::uint8_t>(supported); };
+    return is(16, __builtin_cpu_supports("sse3") != 0) && is(17, __builtin_cpu_supports("ssse3") != 0) &&
+           is(18, __builtin_cpu_supports("sse4.1") != 0) && is(19, __builtin_cpu_supports("sse4.2") != 0) &&
+           is(kAvx, __builtin_cpu_supports("avx") != 0) && is(kAvx + 1, __builtin_cpu_supports("fma") != 0) &&
+           is(kAvx + 5, __builtin_cpu_supports("avx2") != 0) && is(kAvx512, __builtin_cpu_supports("avx512f") != 0) &&
+           is(kAvx512 + 3, __builtin_cpu_supports("avx512cd") != 0) && is(kAvx512 + 4, __builtin_cpu_supports("avx512dq") != 0) &&
+           is(kAvx512 + 5, __builtin_cpu_supports("avx512bw") != 0) && is(kAvx512 + 6, __builtin_cpu_supports("avx512vl") != 0) &&
+           is(kAvx512 + 12, __builtin_cpu_supports("avx512vnni") != 0);
+  }
+  std::uint8_t* bytes_ = nullptr;
+};
+
+/// XNNPACK chooses its instructions when it is initialized: then it shall know of no more than our engines may use.
+bool hold_to_our_instructions() {
+  const std::int64_t targets = hwy::SupportedTargets();
+  hwy::GetChosenTarget().Update(targets);  // the question lets all instructions in again, also those that somebody disabled
+  const bool avx2 = (targets & HWY_AVX2) != 0, avx512 = (targets & (HWY_AVX3 | HWY_AVX3_DL)) != 0;
+  if (avx512 || __builtin_cpu_supports("avx") == 0) return true;
+  if (avx2 && __builtin_cpu_supports("avx512f") == 0) return true;
+  KnownInstructions known;
+  if (!known.found()) return false;
+  avx2 ? known.forget_avx512() : known.forget_avx();
+  return true;
+}
+#else
+bool hold_to_our_instructions() { return true; }
+#endif
 
 void delete_operator(xnn_operator* op) { xnn_delete_operator(op); }
 void delete_threads(pthreadpool* threads) { pthreadpool_destroy(threads); }
@@ -126,6 +175,9 @@ struct FloatPeer::MakeLayer {
 };
 
 Result<std::unique_ptr<FloatPeer>> FloatPeer::make(const Net& net, int threads) {
+  static const bool held = hold_to_our_instructions();
+  if (!held)
+    return Error{ErrorCode::kUnsupported, "this build of XNNPACK cannot be held to the instructions that are asked for"};
   if (xnn_initialize(nullptr) != xnn_status_success)
     return Error{ErrorCode::kUnsupported, "XNNPACK does not run on this processor"};
   std::unique_ptr<FloatPeer> out(new FloatPeer(net));

@@ -16,7 +16,10 @@ namespace duo {
 /// Fills the input, runs, reads the outputs. Weights are the network's integers in its units, activations are not rounded.
 class FloatPeer {
  public:
-  /// Errors  the library refuses a layer, among them sums of results with different numbers of channels
+  /// Takes no better instructions than our engines may where the first one in a process is made.
+  ///
+  /// Errors  the library refuses a layer, among them sums of results with different numbers of channels; it cannot be held to the
+  ///         instructions that our engines are held to
   static Result<std::unique_ptr<FloatPeer>> make(const Net& net, int threads);
   ~FloatPeer();
   FloatPeer(const FloatPeer&) = delete;

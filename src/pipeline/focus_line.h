@@ -27,7 +27,7 @@ Focus around(std::span<const Person> people, const Rectified& rectified, double 
 /// Threads  one that tells, one that asks, and any that closes
 class FocusLine {
  public:
-  static constexpr int kBehind = 3;  // as many pairs are on their way while a frame is tracked
+  static constexpr int kBehind = 4;  // while a frame is tracked two are made, and one may wait for the tracker
   static constexpr int kWholeEvery = 16, kMissedEvery = 4, kFirstWhole = 4;
   FocusLine(const Rectified& rectified, double frame_s, bool live)
       : rectified_(rectified), ahead_s_(kBehind * frame_s), live_(live) {}

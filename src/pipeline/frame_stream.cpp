@@ -11,9 +11,9 @@ namespace duo {
 namespace {
 
 constexpr char kMakeFrame[] = "make the next frame";
-// Pairs outside the engine: being read or read ahead, being aligned, the one before that, in the queue of frames, on its way
+// Pairs outside the engine: being read or read ahead, being aligned, the one before that, two in the queue of frames, on its way
 // out of the queue, and the caller's.
-constexpr std::size_t kPairsOutside = 6;
+constexpr std::size_t kPairsOutside = 7;
 
 std::size_t pairs_in_engine(const PairSource& source, int at_once) {
   return static_cast<std::size_t>(source.live() ? 1 : std::max(1, at_once));
@@ -32,7 +32,8 @@ FrameStream::FrameStream(std::unique_ptr<PairSource> source, Engine* engine, int
       read_(passed.pairs),
       start_ns_(passed.start_ns),
       before_(std::move(passed.last)),
-      ring_(pairs_in_engine(*source_, at_once)) {
+      ring_(pairs_in_engine(*source_, at_once)),
+      frames_(source_->live() ? 1 : 2, WhenFull::kWait) {
   if (before_ != nullptr) align_.remember(*before_);
 }
 

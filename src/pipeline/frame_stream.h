@@ -34,7 +34,7 @@ struct Matched {
 };
 
 /// Source → align in time → engine, in threads. Of files each pair is read and matched in order; a live source gives its newest
-/// pair when the engine is free. One frame waits for who takes it; meanwhile matching rests.
+/// pair when the engine is free. Two frames of files wait for who takes them, of a live source one; meanwhile matching rests.
 class FrameStream {
  public:
   /// Pairs before number `first` are passed over, and of those from there on all but every `every`-th; of a live source also
@@ -114,7 +114,7 @@ class FrameStream {
   int setup_ = 0;
 
   BoundedQueue<std::shared_ptr<Pair>> pairs_{1, WhenFull::kWait};  // of files
-  BoundedQueue<Matched> frames_{1, WhenFull::kWait};
+  BoundedQueue<Matched> frames_;
   Matched taken_;            // on its way out of the queue
   Worker reader_, matcher_;  // last: they use all of the above
 };
