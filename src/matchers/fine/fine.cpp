@@ -53,4 +53,10 @@ void check_planes(const GrayPair& pair, const PlaneMap& left, const PlaneMap& mi
     }
 }
 
+void keep_margin(View<const std::uint16_t> lines, View<std::uint16_t> voted) {
+  for (int y = 0; y < lines.height(); ++y)
+    for (int x = 0; x < lines.width(); ++x)
+      if (16 * x < lines.at(y, x)) voted.at(y, x) = lines.at(y, x);
+}
+
 }  // namespace duo

@@ -64,6 +64,13 @@ class FineStages {
 void check_planes(const GrayPair& pair, const PlaneMap& left, const PlaneMap& mirrored, int tolerance,
                   View<std::uint16_t> d_q4);
 
+/// Takes back the vote where the right view's border cuts off what the left one sees: there nothing was measured on one side,
+/// and lines from the other side's surfaces (stages/fill) are all that is known.
+///
+/// Shape  all H x W
+/// Units  1/16 px
+void keep_margin(View<const std::uint16_t> lines, View<std::uint16_t> voted);
+
 namespace ref {
 
 class Fine {

@@ -40,6 +40,7 @@ void Fine::match(const GrayPair& pair, const Match& out, StageTimer& timer) {
   for (int y = 0; y < out.d_q4.height(); ++y)
     for (int x = 0; x < out.d_q4.width(); ++x) maps_.holes.at(y, x) = out.d_q4.at(y, x) == Disparity::kNone;
   ref::color_median({maps_.whole.d_q4, pair.left_color, maps_.holes, ColorMedian::kMostRadius}, out.filled);
+  keep_margin(maps_.whole.d_q4, out.filled);
   stages.end("vote", 10);
 }
 

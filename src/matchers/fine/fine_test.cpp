@@ -131,6 +131,13 @@ TEST(Fine, ChecksPlanesOfBothViews) {
   test::expect_same<std::uint16_t>(test::image<std::uint16_t>({{kNo, kNo, kNo, 40, kNo, 40}}), checked({}), "too far");
 }
 
+// By hand: 2 px lead column 1 out of the right view, and column 2 to its border.
+TEST(Fine, WhatTheRightViewDoesNotReachKeepsItsLine) {
+  auto voted = test::image<std::uint16_t>({{7, 7, 7, 7}});
+  keep_margin(test::image<std::uint16_t>({{1, 32, 32, 49}}), voted);
+  test::expect_same<std::uint16_t>(test::image<std::uint16_t>({{1, 32, 7, 49}}), voted, "voted");
+}
+
 TEST(Fine, PresetsAndErrors) {
   for (const std::string_view preset : kFinePresets) EXPECT_TRUE(fine_params(preset, {}));
   EXPECT_NE(fine_params("best", {}).error().what.find("choose one of: default, fine"), std::string::npos);

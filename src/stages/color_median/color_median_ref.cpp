@@ -9,9 +9,14 @@ namespace duo {
 namespace {
 
 struct ColorTap {
-  std::uint16_t value;
-  std::uint8_t weight;
+  std::uint16_t value, weight;
 };
+
+/// Of a vote, in 1/64: near taps say more, and what was filled says less than what was measured.
+int vote_weight(const ColorMedian& in, int y, int x, int ty, int tx) {
+  const int near = ColorMedian::kHalf_px2 * 64 / (ColorMedian::kHalf_px2 + (ty - y) * (ty - y) + (tx - x) * (tx - x));
+  return in.chosen.at(ty, tx) != 0 ? near / ColorMedian::kChosenCount : near;
+}
 
 std::uint16_t color_median_at(const ColorMedian& in, int y, int x) {
   constexpr int kAlong = ColorMedian::kMostRadius + 1;
@@ -26,7 +31,9 @@ std::uint16_t color_median_at(const ColorMedian& in, int y, int x) {
       const Rgb8 other = in.guide.at(ty, tx);
       const int step = std::abs(own.r - other.r) + std::abs(own.g - other.g) + std::abs(own.b - other.b);
       if (step >= 64) continue;
-      taps[count++] = {in.d_q4.at(ty, tx), ColorMedian::kWeights[static_cast<std::size_t>(step / 4)]};
+      const int weight = ColorMedian::kWeights[static_cast<std::size_t>(step / 4)] *
+                         (in.chosen.empty() ? 1 : vote_weight(in, y, x, ty, tx));
+      taps[count++] = {in.d_q4.at(ty, tx), static_cast<std::uint16_t>(weight)};
       total += taps[count - 1].weight;
     }
   }
