@@ -64,7 +64,7 @@ class CalibrationSession {
   void recognise();
   /// From what there is.
   void solve();
-  /// After a result: more views.
+  /// After a result: more views; the result is dropped. At the end of a file there are none, and it stays.
   void go_on();
   /// Writes the rig that was found, and its report beside it.
   ///

@@ -36,7 +36,7 @@ struct Quaternion {
 enum class JointState : std::uint8_t {
   kSeen,      // measured in this frame
   kInferred,  // hidden: predicted from what is known of the body; the covariance grows with time
-  kLost,      // could be anywhere in reach; the position means nothing
+  kLost,      // could be anywhere in reach; the position is a guess, on which files of motion fall back
 };
 
 /// One joint at one instant.

@@ -19,7 +19,7 @@ namespace [[gnu::visibility("default")]] duo {
 
 struct PlayerSetup {
   PipelineSetup pipeline = {};               // with a tracker
-  std::function<Result<Input>()> open = {};  // the source: again for each start
+  std::function<Result<Input>()> open = {};  // the source: again for each start; must be set
   SinkTargets sinks = {};
   bool loop = false;
   std::function<void()> on_news = [] {};  // called in the player's thread when there is something new to show
@@ -68,7 +68,7 @@ struct PlayerStatus {
 /// Threads  any; what is asked for happens between two frames
 class Player {
  public:
-  /// `pairs`: what setup.open() gave the first time.
+  /// `pairs`: what setup.open() gave the first time. A setup without tracker or without `open` is a programmer's mistake.
   ///
   /// Errors  those of Pipeline::open() and of the outputs
   static Result<std::unique_ptr<Player>> open(PlayerSetup setup, std::unique_ptr<PairSource> pairs);

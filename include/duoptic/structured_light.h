@@ -187,12 +187,13 @@ Result<void> record_light_folder(PairSource& pairs, const LightCode& code, const
 
 /// Folders of recorded pictures, exposures of the same scene.
 struct LightFolders {
-  std::vector<std::string> folders;
+  std::vector<std::string> folders;     // one or more
   std::vector<std::string> light = {};  // left and right picture in ordinary light; none: those of the black pattern
   std::optional<Rig> rig = {};          // none: the pictures are rectified
   int threads = 1;
 };
-/// Errors  those of find_light_files(), of every picture and of LightDecoder
+/// Errors  no folder; pictures in ordinary light that are neither none nor two; those of find_light_files(), of every picture
+///         and of LightDecoder
 Result<LightTruth> decode_light_folders(const LightCode& code, const LightFolders& what, const LightProgress& progress);
 
 }  // namespace duo

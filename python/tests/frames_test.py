@@ -78,9 +78,17 @@ class Frames(unittest.TestCase):
                     self.assertEqual(told["state"], joint.state)
                     self.assertAlmostEqual(told["sigma_m"], joint.sigma_m, delta=0.500001e-4)
                     if joint.state != "lost":
-                        # Files have the bones' lengths that were learnt later.
+                        # Files have the bones' lengths that were learnt later, and their directions.
                         np.testing.assert_allclose(told["p_in_rig_m"], joint.p_m, atol=0.06, rtol=0)
                         seen += 1
+                for side, (above, below) in itertools.product(("left", "right"), (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))):
+                    names = f"{side}_{above}", f"{side}_{below}"
+                    if "lost" in (person.joints[name].state for name in names):
+                        continue
+                    theirs_bone = np.subtract(*(theirs_person["joints"][name]["p_in_rig_m"] for name in names))
+                    bone = np.subtract(*(person.joints[name].p_m for name in names))
+                    unlike = theirs_bone / np.linalg.norm(theirs_bone) - bone / np.linalg.norm(bone)
+                    self.assertLess(np.linalg.norm(unlike), 2e-3, names)
         self.assertGreater(seen, 100)
 
     def test_fingers_and_pinches(self):

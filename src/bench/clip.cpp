@@ -40,7 +40,10 @@ class TimedPairs final : public PairSource {
 class LinesFile {
  public:
   LinesFile() {
-    std::string name = (fs::temp_directory_path() / "duoptic_bench_XXXXXX").string();
+    std::error_code failed;
+    const fs::path all = fs::temp_directory_path(failed);
+    if (failed) return;
+    std::string name = (all / "duoptic_bench_XXXXXX").string();
     if (mkdtemp(name.data()) != nullptr) folder_ = name;
   }
   ~LinesFile() {
@@ -133,10 +136,14 @@ Result<ClipRun> run_clip(const BenchClip& clip, const PipelineSetup& setup) {
   DUO_TRY(written);
   if (out.frames == 0) return Error{ErrorCode::kBadInput, fmt::format("{} holds no pair", clip.folder.string())};
   DUO_TRY(pipeline.finish_sinks());
+  std::error_code failed;
+  const auto lines_bytes = fs::file_size(lines.path(), failed);
+  if (failed)
+    return Error{ErrorCode::kWriteFailed, fmt::format("cannot measure {}: {}", lines.path().string(), failed.message())};
   out.parts = {{"decode", "", decode_ms, 6.0 * size.width * size.height * out.frames},
                {"engine", "", engine_ms, maps_bytes},
                {"tracker", "", tracker_ms, people_bytes},
-               {"lines", "", write_ms, static_cast<double>(fs::file_size(lines.path()))},
+               {"lines", "", write_ms, static_cast<double>(lines_bytes)},
                {"other", "", next_ms - decode_ms - engine_ms - tracker_ms, 0}};
   out.parts.insert(out.parts.end(), stages.begin(), stages.end());
   for (ClipPart& part : out.parts) part.cpu_ms /= out.frames, part.bytes /= out.frames;
@@ -247,7 +254,7 @@ Result<std::string> bench_clip(const fs::path& folder, const std::string& engine
   DUO_TRY_ASSIGN(setup.frames.max_disparity, disparities_for_people(clip.rig));
   DUO_TRY_ASSIGN(const nlohmann::json table, clip_table(clip, repeat));
   say_clip(table, say);
-  return table.dump();
+  return table.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);  // a folder's name may be no UTF-8
 }
 
 }  // namespace duo

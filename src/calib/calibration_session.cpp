@@ -76,6 +76,7 @@ void CalibrationSession::go_on() {
   post([this] {
     const std::lock_guard lock(mutex_);
     status_.state = ended_ ? SessionState::kEnded : SessionState::kLooking;
+    if (!ended_) status_.found.reset();  // save() reads the guide, which looking changes
   });
 }
 
@@ -168,6 +169,7 @@ void CalibrationSession::begin(const Board& board) {
     pairs_.reset();
     auto again = setup_.open();
     if (!again) {
+      ended_ = true;  // there is nothing to look at
       say(again.error().what);
       const std::lock_guard lock(mutex_);
       status_.state = SessionState::kEnded;

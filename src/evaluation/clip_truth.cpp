@@ -22,7 +22,8 @@ JointTruth joint_of(const nlohmann::json& j, Size picture) {
   if (const auto& uv = j.at("uv_left"); !uv.is_null()) {
     joint.u_px = uv.at(0).get<double>();
     joint.v_px = uv.at(1).get<double>();
-    joint.in_picture = joint.u_px >= 0 && joint.v_px >= 0 && joint.u_px <= picture.width - 1 && joint.v_px <= picture.height - 1;
+    joint.in_picture =
+        joint.u_px >= 0 && joint.v_px >= 0 && joint.u_px <= picture.width - 1 && joint.v_px <= picture.height - 1;
   }
   return joint;
 }
@@ -68,7 +69,9 @@ Result<std::int64_t> ClipTruth::first_visible(std::span<const JointId> joints) c
 
 Result<ClipTruth> load_clip(const fs::path& folder) {
   ClipTruth clip;
-  clip.name = fs::weakly_canonical(folder).filename().string();
+  std::error_code failed;
+  const fs::path whole = fs::weakly_canonical(folder, failed);
+  clip.name = failed ? folder.string() : whole.filename().string();
   DUO_TRY_ASSIGN(clip.rig, load_rig(folder / "calibration_truth.yml"));
   const fs::path path = folder / "truth.json";
   DUO_TRY_ASSIGN(const nlohmann::json truth, read_json(path));
@@ -80,7 +83,8 @@ Result<ClipTruth> load_clip(const fs::path& folder) {
       if (!frame.contains("others")) continue;
       const auto& others = frame.at("others");
       clip.others.resize(std::max(clip.others.size(), others.size()));
-      for (std::size_t k = 0; k < others.size(); ++k) clip.others[k].push_back(frame_of(others[k].at("joints"), clip.rig.left.size));
+      for (std::size_t k = 0; k < others.size(); ++k)
+        clip.others[k].push_back(frame_of(others[k].at("joints"), clip.rig.left.size));
     }
     for (const auto& other : clip.others)
       if (other.size() != clip.frames.size())
@@ -91,8 +95,13 @@ Result<ClipTruth> load_clip(const fs::path& folder) {
   return clip;
 }
 
+/// A picture that the system does not let us look at counts as there: reading it says why.
 bool has_depth_truth(const fs::path& folder, std::int64_t frame) {
-  return fs::exists(depth_path(folder, frame)) && fs::exists(figure_path(folder, frame));
+  const auto there = [](const fs::path& path) {
+    std::error_code failed;
+    return fs::exists(path, failed) || failed;
+  };
+  return there(depth_path(folder, frame)) && there(figure_path(folder, frame));
 }
 
 Result<DepthTruth> load_depth_truth(const fs::path& folder, std::int64_t frame) {

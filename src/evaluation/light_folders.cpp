@@ -51,6 +51,12 @@ Result<void> record_light_folder(PairSource& pairs, const LightCode& code, const
 }
 
 Result<LightTruth> decode_light_folders(const LightCode& code, const LightFolders& what, const LightProgress& progress) {
+  if (what.folders.empty()) return Error{ErrorCode::kBadInput, "cannot decode: name a folder of recorded pictures"};
+  const bool other_light = !what.light.empty();
+  if (other_light && what.light.size() != 2)
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("cannot decode with {} picture{} in ordinary light: name two, left and right", what.light.size(),
+                             what.light.size() == 1 ? "" : "s")};
   std::vector<LightFiles> files;
   for (const std::string& folder : what.folders) {
     DUO_TRY_ASSIGN(const auto found, find_light_files(folder, code));
@@ -68,7 +74,6 @@ Result<LightTruth> decode_light_folders(const LightCode& code, const LightFolder
     if (const auto added = decoder->add(pair); !added)
       return Error{added.error().code, fmt::format("{}: {}", files[i].left.parent_path().string(), added.error().what)};
   }
-  const bool other_light = !what.light.empty();
   if (other_light) {
     DUO_TRY_ASSIGN(pair.left, load_one(what.light[0]));
     DUO_TRY_ASSIGN(pair.right, load_one(what.light[1]));

@@ -140,8 +140,11 @@ Result<std::vector<fs::path>> find_scenes_of(const std::vector<std::string>& nam
   std::vector<fs::path> all;
   for (const std::string& name : names) {
     DUO_TRY_ASSIGN(const auto found, find_scenes({fs::path(name)}));
-    if (found.size() > 1)
-      groups.push_back({fs::weakly_canonical(name).filename().string(), all.size(), all.size() + found.size()});
+    if (found.size() > 1) {
+      std::error_code failed;
+      const fs::path whole = fs::weakly_canonical(name, failed);
+      groups.push_back({failed ? name : whole.filename().string(), all.size(), all.size() + found.size()});
+    }
     all.insert(all.end(), found.begin(), found.end());
   }
   if (names.size() == 1) groups.clear();

@@ -148,6 +148,7 @@ Result<std::optional<DepthScore>> score_depth(const std::filesystem::path& folde
     DUO_TRY_ASSIGN(const Next next, pipeline.next());
     if (next != Next::kNew) break;
     i = std::llround(static_cast<double>(pipeline.pair()->left.t_ns) * 1e-9 / frame_s);
+    if (!has_depth_truth(folder, i)) continue;  // a pair before it is missing
     DUO_TRY_ASSIGN(const DepthTruth of_frame, load_depth_truth(folder, i));
     tally.add(*pipeline.frame(), pipeline.header().rectified, truth.rig.left, of_frame);
   }

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "duoptic/synthetic.h"
+#include "pipeline/tracked_setup.h"
 #include "tests/agree.h"
 #include "tests/allocations.h"
 #include "tests/waving_clip.h"
@@ -122,6 +123,18 @@ TEST(Pipeline, OtherParametersOnTheWay) {
     }
     EXPECT_EQ(*pipeline.next(), Next::kEnd);
   }
+}
+
+TEST(Pipeline, TrackersGoWithoutTheLastFractionUnlessItIsNamed) {
+  duo::Setup wanted;
+  wanted.matcher = "sgm";
+  const std::vector<std::pair<std::string, double>> without = {{"refine", 0}}, named = {{"refine", 0}, {"refine", 1}};
+  EXPECT_EQ(setup_of_tracked(wanted).parameters, without);
+  wanted.parameters = {{"refine", 1}};
+  EXPECT_EQ(setup_of_tracked(wanted).parameters, named);  // the last one counts
+  wanted = {};
+  wanted.matcher = "pyramid";
+  EXPECT_TRUE(setup_of_tracked(wanted).parameters.empty());
 }
 
 TEST(Pipeline, AllocatesNothingPerFrame) {

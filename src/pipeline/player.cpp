@@ -35,6 +35,7 @@ double now_ms() { return static_cast<double>(wall_ns()) * 1e-6; }
 
 Result<std::unique_ptr<Player>> Player::open(PlayerSetup setup, std::unique_ptr<PairSource> pairs) {
   DUO_CHECK(!setup.pipeline.tracker.empty());
+  DUO_CHECK(setup.open);
   std::unique_ptr<Player> player(new Player(std::move(setup)));
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(pairs), std::move(player->setup_.pipeline)));
   player->rig_ = *pipeline.setup().rig;

@@ -42,9 +42,8 @@ void expect_engines_agree(Size size, int max_disparity, int paths, bool masked, 
   Image<std::uint16_t> want(size);
   Image<std::uint8_t> sure(size);
   ref::Sgm(params, setup).match(pair, {want, sure}, timer);
-  // One thread and one number of several, another in each case: starting threads takes longer than the work.
-  static int cases = 0;
-  const int several = 2 + cases++ % 4;
+  // One thread and one number of several, which differs from case to case: starting threads takes longer than the work.
+  const int several = 2 + (max_disparity + paths + clear + (masked ? 1 : 0)) % 4;
   test::each_target([&](const std::string& target) {
     for (const int threads : {1, several}) {
       Pool pool(threads);
