@@ -28,7 +28,7 @@ struct ColorMedian {
   /// round(255 exp(-(4 i + 1.5) / 10)), at least 1.
   static constexpr std::array<std::uint8_t, 16> kWeights = {219, 147, 99, 66, 44, 30, 20, 13, 9, 6, 4, 3, 2, 1, 1, 1};
   static constexpr int kStep = 2, kMostRadius = 12;
-  static constexpr int kHalf_px2 = 40, kChosenCount = 8;
+  static constexpr int kHalf_px2 = 40, kChosenCount = 4;
 
   View<const std::uint16_t> d_q4;
   View<const Rgb8> guide;

@@ -50,14 +50,14 @@ TEST(ColorMedian, OnlyWhereChosen) {
 }
 
 // By hand, x = 4, radius 4: taps 0 2 4 6 8 with values 1 9 20 20 5, all of one colour. By distance 45 58 64 58 45, of the chosen
-// ones an eighth: 45 of 1, 45 of 5, 58 of 9, 8 + 7 of 20 are 163, of which 1 and 5 have more than half. Unweighted it were 9.
+// ones a quarter: 45 of 1, 45 of 5, 58 of 9, 16 + 14 of 20 are 178, of which 1 and 5 have more than half. Unweighted it were 9.
 TEST(ColorMedian, NearAndMeasuredTapsHaveMoreOfTheVote) {
   const auto d = test::image<std::uint16_t>({{1, 0, 9, 0, 20, 0, 20, 0, 5}});
   auto chosen = test::image<std::uint8_t>({{0, 0, 0, 0, 1, 0, 1, 0, 0}});
   const Image<Rgb8> guide(d.size());
   EXPECT_EQ(colored({d, guide, chosen, 4}).at(0, 4), 5);
   EXPECT_EQ(colored({d, guide, {}, 4}).at(0, 4), 9);
-  chosen.at(0, 8) = 1;  // 45 of 1, 5 of 5, 58 of 9 and 15 of 20 are 123
+  chosen.at(0, 8) = 1;  // 45 of 1, 11 of 5, 58 of 9 and 30 of 20 are 144
   EXPECT_EQ(colored({d, guide, chosen, 4}).at(0, 4), 9);
 }
 
