@@ -125,7 +125,12 @@ Result<Summary> track_all(Pipeline& pipeline, Events& events, std::span<const Se
     progress.frame(frame.number + 1);
     events.look_at(pipeline);
     if (const auto warning = pipeline.live() ? skew.see(frame) : std::nullopt) say(app, "warning: " + *warning);
-    DUO_TRY_ASSIGN(summary.end, next_frame(pipeline, events));
+    const Result<Next> next = next_frame(pipeline, events);
+    if (!next) {
+      pipeline.forget();  // writes the lines that wait
+      return next.error();
+    }
+    summary.end = *next;
     if (summary.end != Next::kNew) break;
   }
   DUO_TRY(pipeline.finish_sinks());

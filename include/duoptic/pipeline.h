@@ -104,7 +104,7 @@ class Pipeline {
   const std::string& rig_news() const;
   /// Tracks from clicks on this frame; see Tracker::select().
   Result<void> select(std::span<const Selection> selections);
-  /// Forgets who was selected.
+  /// Forgets who was selected and who was found; what waits before sinks is written.
   void forget();
   /// Other parameters of the matcher, by name; this frame is made anew with them, and those that follow are; tracking goes on.
   ///
@@ -115,7 +115,7 @@ class Pipeline {
   void look_at(std::span<const Window> windows);
 
   /// Adds an output. One of a live source that may have to wait gets a thread of its own; one of files that wants no pictures
-  /// is given each frame up to two and a half seconds of the clip later, with the bones' lengths that were learnt meanwhile.
+  /// is given each frame up to 75 frames later, 2.5 s at 30 per second, with the bones' lengths that were learnt meanwhile.
   ///
   /// Errors  the system gives no thread
   Result<void> add_sink(std::string name, std::unique_ptr<Sink> sink);

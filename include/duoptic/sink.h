@@ -63,7 +63,7 @@ struct TrackedFrame {
   std::int64_t number = 0;              // from 0, of the source
   double t_s = 0;                       // since the source's first picture
   std::shared_ptr<const Picture> left;  // raw
-  std::shared_ptr<const Frame> frame;   // with disparity and colour
+  std::shared_ptr<const Frame> frame;   // with disparity and colour; as `left` without pictures for sinks that want none
   std::span<const Person> people;
   std::optional<TrackTimes> times;  // written only when given, because they differ from run to run
 };
@@ -77,6 +77,9 @@ class Sink {
   virtual bool wants_pictures() const { return false; }
   /// Whether write() always returns at once, whatever happens to what it sends.
   virtual bool instant() const { return false; }
+  /// Persons who come from now on are others, whatever their numbers: everybody is looked for anew, or the source goes on
+  /// elsewhere.
+  virtual void begin_anew() {}
   /// Frames that were not written or sent because the last one took too long.
   virtual std::int64_t dropped() const { return 0; }
   /// Ends the file and gives it its name; without it nothing is left.

@@ -254,6 +254,7 @@ void Pipeline::forget() {
   if (state_->tracker) state_->tracker->reset();
   if (state_->focus) state_->focus->forget();
   state_->people.clear();
+  for (const State::NamedSink& sink : state_->sinks) sink.sink->begin_anew();
 }
 
 Result<void> Pipeline::set(const std::vector<std::pair<std::string, double>>& parameters) {
@@ -275,7 +276,8 @@ Result<void> Pipeline::add_sink(std::string name, std::unique_ptr<Sink> sink) {
   if (live() && !sink->instant()) {
     DUO_TRY_ASSIGN(sink, in_background(std::move(sink)));
   }
-  if (!live() && state_->tracker) sink = with_settled_bones(std::move(sink), state_->setup.frames.rig, state_->header.rectified);
+  if (!live() && state_->tracker)
+    sink = with_settled_bones(std::move(sink), state_->setup.frames.rig, state_->header.rectified);
   state_->sinks.push_back({std::move(name), std::move(sink)});
   return {};
 }
@@ -345,6 +347,7 @@ void Pipeline::close_source() {
   s.found.forget();
   s.last = {};
   s.people.clear();
+  for (const State::NamedSink& sink : s.sinks) sink.sink->begin_anew();
 }
 
 Result<void> Pipeline::restart(std::unique_ptr<PairSource> pairs, std::int64_t first) {

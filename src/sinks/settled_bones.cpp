@@ -83,6 +83,7 @@ class SettledBones final : public Sink {
       : sink_(std::move(sink)), lens_(lens), left_from_rig_(transposed(rig_from_left)) {}
 
   Result<void> write(const TrackedFrame& frame) override {
+    if (failed_) return *failed_;
     waiting_.emplace_back().keep(frame, false);
     for (Person& person : waiting_.back().people) {
       if (person.find(JointId::kPelvis) == nullptr) continue;  // an arm is measured where it is
@@ -101,10 +102,16 @@ class SettledBones final : public Sink {
     while (!waiting_.empty() && may_go(waiting_.front())) DUO_TRY(let_go());
     return {};
   }
+  void begin_anew() override {
+    const Result<void> written = write_all();
+    if (!written) failed_ = written.error();
+    waiting_.clear();
+    known_.clear();
+  }
   std::int64_t dropped() const override { return sink_->dropped(); }
   Result<void> finish() override {
-    for (auto& [id, known] : known_) settle(id, known);
-    while (!waiting_.empty()) DUO_TRY(let_go());
+    if (failed_) return *failed_;
+    DUO_TRY(write_all());
     return sink_->finish();
   }
 
@@ -141,6 +148,11 @@ class SettledBones final : public Sink {
     }
     person.sum_up();
   }
+  Result<void> write_all() {
+    for (auto& [id, known] : known_) settle(id, known);
+    while (!waiting_.empty()) DUO_TRY(let_go());
+    return {};
+  }
   Result<void> let_go() {
     DUO_TRY(sink_->write(waiting_.front().view()));
     waiting_.pop_front();
@@ -152,11 +164,13 @@ class SettledBones final : public Sink {
   Mat3 left_from_rig_;
   std::deque<KeptFrame> waiting_;
   std::map<std::uint32_t, Known> known_;  // by person
+  std::optional<Error> failed_;           // in begin_anew(), which cannot say so
 };
 
 }  // namespace
 
-std::unique_ptr<Sink> with_settled_bones(std::unique_ptr<Sink> sink, const std::optional<Rig>& rig, const Rectified& rectified) {
+std::unique_ptr<Sink> with_settled_bones(std::unique_ptr<Sink> sink, const std::optional<Rig>& rig,
+                                         const Rectified& rectified) {
   if (!rig || sink->wants_pictures() || sink->instant()) return sink;
   return std::make_unique<SettledBones>(std::move(sink), Lens(rig->left), rectified.rig_from_left);
 }

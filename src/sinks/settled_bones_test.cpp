@@ -78,8 +78,7 @@ TEST(SettledBones, TheFirstFramesHaveTheLengthsThatTheLaterOnesSettleAt) {
     Vec3 moved;
     for (std::size_t j = 0; j < kBody.joints.size(); ++j)
       moved = moved + (after.joints[j].p_in_rig_m - before.joints[j].p_in_rig_m);
-    for (std::size_t j = 1; j < kBody.joints.size(); ++j)
-      EXPECT_NEAR(bone_m(after, static_cast<JointId>(j)), 0.22, 1e-9) << i;
+    for (std::size_t j = 1; j < kBody.joints.size(); ++j) EXPECT_NEAR(bone_m(after, static_cast<JointId>(j)), 0.22, 1e-9) << i;
     EXPECT_LT(norm(moved), 1e-9) << "on the mean joints stay where they were";
     const Joint& hand = *after.find(JointId::kLeftHand);
     if (i >= 20) continue;
@@ -104,6 +103,26 @@ TEST(SettledBones, WhoChangesOnHasTheLengthsOfTheLastFrameThatCanWait) {
   EXPECT_NEAR(bone_m(arrived.people[0][1], JointId::kLeftFoot), 0.2, 1e-9);
   EXPECT_NEAR(bone_m(arrived.people[94][1], JointId::kLeftElbow), 0.275, 1e-9);
   EXPECT_NEAR(bone_m(arrived.people[96][1], JointId::kLeftElbow), 0.2955, 6e-4) << "more than 2 cm off";
+}
+
+TEST(SettledBones, WhoHasTheNumberOfSomebodyBeforeHasBonesOfItsOwn) {
+  Arrived arrived;
+  const auto sink = settled(arrived);
+  Instant instant;
+  for (int i = 0; i < 15; ++i) {
+    instant.people = {body_of(0.3)};
+    ASSERT_TRUE(sink->write(instant.tracked(i)));
+  }
+  instant.people = {body_of(0.4, 2)};
+  ASSERT_TRUE(sink->write(instant.tracked(15)));
+  EXPECT_EQ(arrived.numbers.size(), 15u);
+  sink->begin_anew();
+  EXPECT_EQ(arrived.numbers.size(), 16u);
+  instant.people = {body_of(0.29)};
+  ASSERT_TRUE(sink->write(instant.tracked(16)));
+  ASSERT_TRUE(sink->finish());
+  EXPECT_NEAR(bone_m(arrived.people[14][0], JointId::kLeftElbow), 0.3, 1e-9);
+  EXPECT_NEAR(bone_m(arrived.people[16][0], JointId::kLeftElbow), 0.29, 1e-9);
 }
 
 TEST(SettledBones, ArmsAndNobodyWaitForNothingAndTheEndWritesAll) {

@@ -35,7 +35,7 @@ class Lengths {
 
   double operator[](Bone bone) const { return length_m_[static_cast<std::size_t>(bone)]; }
   /// The same, but kept once samples of a total weight of 50 were learnt, until it turns out to be wrong by more than 8 mm:
-  /// bones that are published do not breathe. At 30 frames per second that takes limbs, of which both sides count, 0.8 s
+  /// bones that are published keep their lengths. At 30 frames per second that takes limbs, of which both sides count, 0.8 s
   /// or more, and shoulders, hips, trunk and head 1.7 s or more.
   double kept(Bone bone) const { return kept_m_[static_cast<std::size_t>(bone)]; }
   /// How well it is known: one standard deviation.
