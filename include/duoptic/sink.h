@@ -58,12 +58,13 @@ struct TrackTimes {
   double engine_ms = 0, tracker_ms = 0;
 };
 
-/// One instant. `left` and `frame` may be kept; `people` live until write() returns.
+/// One instant. `left` and `frame` may be kept by sinks that want pictures; `people`, and what others get in place of both,
+/// live until write() returns.
 struct TrackedFrame {
   std::int64_t number = 0;              // from 0, of the source
   double t_s = 0;                       // since the source's first picture
   std::shared_ptr<const Picture> left;  // raw
-  std::shared_ptr<const Frame> frame;   // with disparity and colour; as `left` without pictures for sinks that want none
+  std::shared_ptr<const Frame> frame;   // with disparity and colour
   std::span<const Person> people;
   std::optional<TrackTimes> times;  // written only when given, because they differ from run to run
 };
