@@ -61,10 +61,13 @@ std::unique_ptr<Sink> sink_of(const std::string& target, Axes axes, const TrackH
   if (target.starts_with("vmc://")) return value(make_vmc(target.substr(6)));
   SinkTargets how;
   how.axes = axes;
-  for (const SinkKind& kind : sink_kinds())
-    if (kind.is_file() && target.ends_with(kind.target)) return value(kind.make(target, how, header, note));
-  refuse("cannot write '" + target +
-         "': no kind of output; there are .jsonl, .csv, .bvh, .glb, .trc, .mcap, .mp4, osc://HOST:PORT and vmc://HOST:PORT");
+  std::string endings;
+  for (const SinkKind& kind : sink_kinds()) {
+    if (!kind.is_file()) continue;
+    if (target.ends_with(kind.target)) return value(kind.make(target, how, header, note));
+    endings += kind.target + std::string(", ");
+  }
+  refuse("cannot write '" + target + "': no kind of output; there are " + endings + "osc://HOST:PORT and vmc://HOST:PORT");
 }
 
 /// The frames of one source. A call that comes while another thread is in one fails.

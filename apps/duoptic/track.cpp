@@ -127,7 +127,7 @@ Result<Summary> track_all(Pipeline& pipeline, Events& events, std::span<const Se
     if (const auto warning = pipeline.live() ? skew.see(frame) : std::nullopt) say(app, "warning: " + *warning);
     const Result<Next> next = next_frame(pipeline, events);
     if (!next) {
-      pipeline.forget();  // writes the lines that wait
+      static_cast<void>(pipeline.flush_sinks());  // the first error counts
       return next.error();
     }
     summary.end = *next;

@@ -41,10 +41,11 @@ Result<Sidebar> Sidebar::make(std::string source, const EngineOptions& engine, c
   out.matcher_ = engine.matcher;
   out.source_ = std::move(source);
   DUO_TRY_ASSIGN(out.parameters_, matcher_parameters(engine.matcher, engine.preset));
-  const auto overrides = engine.setup().parameters;
   for (const ParameterInfo& info : out.parameters_) {
-    const auto given = std::find_if(overrides.begin(), overrides.end(), [&](const auto& o) { return o.first == info.name; });
-    out.values_.push_back(static_cast<int>(given != overrides.end() ? given->second : info.value));
+    double value = info.value;
+    for (const auto& [name, given] : player.parameters())
+      if (name == info.name) value = given;
+    out.values_.push_back(static_cast<int>(value));
   }
   out.doubts_ = rig_doubts(player.rig());
   out.metric_ = player.rig().metric;
@@ -363,10 +364,9 @@ void Sidebar::put_parameters(Player& player) {
     changed = true;
   }
   if (!changed) return;
-  std::vector<std::pair<std::string, double>> overrides;
-  for (std::size_t i = 0; i < parameters_.size(); ++i)
-    if (values_[i] != static_cast<int>(parameters_[i].value)) overrides.emplace_back(parameters_[i].name, values_[i]);
-  player.set(overrides);
+  std::vector<std::pair<std::string, double>> shown;  // all: what is not named may have another value where people are tracked
+  for (std::size_t i = 0; i < parameters_.size(); ++i) shown.emplace_back(parameters_[i].name, values_[i]);
+  player.set(shown);
 }
 
 void Sidebar::put_source(Player& player, const PlayerStatus& status) const {

@@ -104,7 +104,7 @@ class Pipeline {
   const std::string& rig_news() const;
   /// Tracks from clicks on this frame; see Tracker::select().
   Result<void> select(std::span<const Selection> selections);
-  /// Forgets who was selected and who was found; what waits before sinks is written.
+  /// Forgets who was selected and who was found.
   void forget();
   /// Other parameters of the matcher, by name; this frame is made anew with them, and those that follow are; tracking goes on.
   ///
@@ -124,6 +124,10 @@ class Pipeline {
   ///
   /// Errors  the first that a sink had
   Result<void> write();
+  /// Writes what waits in outputs for later frames, where no later one comes and they are not to be completed.
+  ///
+  /// Errors  those of Sink::flush()
+  Result<void> flush_sinks();
   /// Completes one output, or all.
   ///
   /// Errors  those of Sink::finish()

@@ -78,6 +78,8 @@ class Player {
 
   const TrackHeader& header() const { return pipeline_->header(); }
   const Rig& rig() const { return rig_; }
+  /// Of the matcher, by name, as it began; of one name the last counts.
+  const std::vector<std::pair<std::string, double>>& parameters() const { return parameters_; }
   bool live() const { return header().live; }
   bool still() const { return still_; }
   bool asks_for_clicks() const { return !pipeline_->tracker()->starts_by_itself(); }
@@ -127,6 +129,7 @@ class Player {
   bool resting() const;
 
   PlayerSetup setup_;
+  std::vector<std::pair<std::string, double>> parameters_;
   Rig rig_;
   bool still_ = false;
   std::int64_t count_ = 0;

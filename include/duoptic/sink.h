@@ -78,9 +78,8 @@ class Sink {
   virtual bool wants_pictures() const { return false; }
   /// Whether write() always returns at once, whatever happens to what it sends.
   virtual bool instant() const { return false; }
-  /// Persons who come from now on are others, whatever their numbers: everybody is looked for anew, or the source goes on
-  /// elsewhere.
-  virtual void begin_anew() {}
+  /// Writes what waits for later frames.
+  virtual Result<void> flush() { return {}; }
   /// Frames that were not written or sent because the last one took too long.
   virtual std::int64_t dropped() const { return 0; }
   /// Ends the file and gives it its name; without it nothing is left.

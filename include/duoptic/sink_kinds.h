@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -16,12 +17,16 @@ namespace [[gnu::visibility("default")]] duo {
 
 struct SinkTargets;
 
+/// What an output needs of frames beside people.
+enum class SinkMaps : std::uint8_t { kNone, kDrawn, kDepth };
+
 /// One kind of output.
 struct SinkKind {
   const char *option, *type, *help;  // on the command line
   const char* label;                 // in a window
   const char* target;                // the ending of a file's name, or host:port
   bool once;                         // in a run
+  SinkMaps maps;
   /// `note`: what its user should know of it; else as it was.
   Result<std::unique_ptr<Sink>> (*make)(const std::string& target, const SinkTargets& how, const TrackHeader& header,
                                         std::string& note);

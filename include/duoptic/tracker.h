@@ -71,6 +71,7 @@ class Tracker {
   virtual Result<std::span<const Person>> select(const Frame& frame, std::span<const Selection> selections) = 0;
   /// The persons in this frame. Valid until the next call.
   virtual std::span<const Person> track(const Frame& frame) = 0;
+  /// Forgets everybody. Who is found without a click from then on has a number that nobody had before.
   virtual void reset() = 0;
   /// Times of the last track(), and of trackers on a device of select(), where stages are timed; the list ends at the first
   /// wall_ns of 0.

@@ -45,7 +45,7 @@ TEST(DetectorVk, GivesTheBitsOfTheProcessor) {
 
 TEST(DetectorVk, ClosedLoopHasTheHashOfTheProcessor) {
   const auto pictures = test::pictures_of("dev_easy_wave");
-  if (pictures.empty()) GTEST_SKIP() << "no test data";
+  if (pictures.empty()) GTEST_SKIP() << "skipped: no data";
   const std::size_t count = test::long_run() ? pictures.size() : 3;
   for (const BodyModel body : {BodyModel::kLite, BodyModel::kFull}) {
     if (body == BodyModel::kFull && !test::long_run()) continue;

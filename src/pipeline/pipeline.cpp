@@ -88,6 +88,7 @@ Result<void> Pipeline::State::prepare() {
       DUO_TRY_ASSIGN(tracker, make_tracker(setup.tracker));
     }
     add_wants(tracker->wants(), of_engine.wants);
+    of_engine = setup_of_tracked(of_engine);
     header.tracker = tracker->name();
     header.skeletons.assign(tracker->skeletons().begin(), tracker->skeletons().end());
   }
@@ -104,8 +105,7 @@ Result<void> Pipeline::State::prepare() {
   return prepare_tracker();
 }
 
-Result<void> Pipeline::State::prepare_engine(const Setup& wanted) {
-  const Setup of_engine = tracker != nullptr ? setup_of_tracked(wanted) : wanted;
+Result<void> Pipeline::State::prepare_engine(const Setup& of_engine) {
   if (frames) return frames->prepare(of_engine, last);  // each of its pairs comes with a focus
   DUO_TRY(engine->prepare(of_engine));
   if (header.focus) engine->focus({});  // from the first frame on
@@ -254,13 +254,13 @@ void Pipeline::forget() {
   if (state_->tracker) state_->tracker->reset();
   if (state_->focus) state_->focus->forget();
   state_->people.clear();
-  for (const State::NamedSink& sink : state_->sinks) sink.sink->begin_anew();
 }
 
 Result<void> Pipeline::set(const std::vector<std::pair<std::string, double>>& parameters) {
   State& s = *state_;
   Setup setup = s.setup.frames;
   setup.parameters = parameters;
+  if (s.tracker) setup = setup_of_tracked(setup);
   DUO_TRY(s.prepare_engine(setup));
   s.setup.frames = std::move(setup);
   return {};
@@ -310,6 +310,13 @@ Result<void> Pipeline::finish_sink(std::string_view name) {
   return first;
 }
 
+Result<void> Pipeline::flush_sinks() {
+  Result<void> first;
+  for (const State::NamedSink& sink : state_->sinks)
+    if (const Result<void> flushed = sink.sink->flush(); !flushed && first) first = flushed;
+  return first;
+}
+
 Result<void> Pipeline::finish_sinks() {
   Result<void> first;
   for (const State::NamedSink& sink : state_->sinks)
@@ -347,7 +354,6 @@ void Pipeline::close_source() {
   s.found.forget();
   s.last = {};
   s.people.clear();
-  for (const State::NamedSink& sink : s.sinks) sink.sink->begin_anew();
 }
 
 Result<void> Pipeline::restart(std::unique_ptr<PairSource> pairs, std::int64_t first) {

@@ -39,6 +39,7 @@ Result<std::unique_ptr<Player>> Player::open(PlayerSetup setup, std::unique_ptr<
   std::unique_ptr<Player> player(new Player(std::move(setup)));
   DUO_TRY_ASSIGN(Pipeline pipeline, Pipeline::open(std::move(pairs), std::move(player->setup_.pipeline)));
   player->rig_ = *pipeline.setup().rig;
+  player->parameters_ = pipeline.setup().parameters;
   player->skew_ = SkewWatch(pipeline.header().rectified.baseline_m);
   player->still_ = pipeline.still();
   player->count_ = pipeline.count();

@@ -83,7 +83,6 @@ class SettledBones final : public Sink {
       : sink_(std::move(sink)), lens_(lens), left_from_rig_(transposed(rig_from_left)) {}
 
   Result<void> write(const TrackedFrame& frame) override {
-    if (failed_) return *failed_;
     waiting_.emplace_back().keep(frame, false);
     for (Person& person : waiting_.back().people) {
       if (person.find(JointId::kPelvis) == nullptr) continue;  // an arm is measured where it is
@@ -102,16 +101,14 @@ class SettledBones final : public Sink {
     while (!waiting_.empty() && may_go(waiting_.front())) DUO_TRY(let_go());
     return {};
   }
-  void begin_anew() override {
-    const Result<void> written = write_all();
-    if (!written) failed_ = written.error();
-    waiting_.clear();
-    known_.clear();
+  Result<void> flush() override {
+    for (auto& [id, known] : known_) settle(id, known);
+    while (!waiting_.empty()) DUO_TRY(let_go());
+    return sink_->flush();
   }
   std::int64_t dropped() const override { return sink_->dropped(); }
   Result<void> finish() override {
-    if (failed_) return *failed_;
-    DUO_TRY(write_all());
+    DUO_TRY(flush());
     return sink_->finish();
   }
 
@@ -148,11 +145,6 @@ class SettledBones final : public Sink {
     }
     person.sum_up();
   }
-  Result<void> write_all() {
-    for (auto& [id, known] : known_) settle(id, known);
-    while (!waiting_.empty()) DUO_TRY(let_go());
-    return {};
-  }
   Result<void> let_go() {
     DUO_TRY(sink_->write(waiting_.front().view()));
     waiting_.pop_front();
@@ -164,7 +156,6 @@ class SettledBones final : public Sink {
   Mat3 left_from_rig_;
   std::deque<KeptFrame> waiting_;
   std::map<std::uint32_t, Known> known_;  // by person
-  std::optional<Error> failed_;           // in begin_anew(), which cannot say so
 };
 
 }  // namespace

@@ -102,7 +102,7 @@ class BodyTracker final : public Tracker {
   std::vector<Person> people_;
   StageTimer timer_;
   StageTimer::Times times_{};
-  std::uint32_t next_id_ = 1;
+  std::uint32_t next_id_ = 1;                 // goes on after reset(): files and receivers know persons by it
   std::int64_t frame_ = 0, next_search_ = 0;  // for those who are new
   TimeNs last_ns_ = 0;                        // the time of the last frame,
   double last_step_s_ = 0;                    // and that from the one before to it
@@ -145,7 +145,6 @@ void BodyTracker::reset() {
   if (detector_)
     finder_ = std::make_unique<PeopleFinder>(
         *detector_, PeopleFinder::Options{.hands = false, .most = kMostPeople, .search_every = kSearchEvery});
-  next_id_ = 1;
   frame_ = next_search_ = 0;
   last_step_s_ = setup_.frame_s;
 }

@@ -104,10 +104,11 @@ TEST(BodyTracker, OneAndTwoThreadsGiveTheSameBits) {
     EXPECT_FALSE(want.empty());
     EXPECT_EQ(bytes_of(two->track(*frame)), want);
   }
-  // And again from the start.
+  // And again from the start, as somebody else.
   one->reset();
   two->reset();
   EXPECT_EQ(bytes_of(one->track(*person.frames[0])), bytes_of(two->track(*person.frames[0])));
+  EXPECT_EQ(one->track(*person.frames[1])[0].id, 2u);
 }
 
 TEST(BodyTracker, EveryInstructionSetGivesTheSameBits) {
