@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <limits>
 #include <memory>
 
 #include "command.h"
@@ -80,6 +81,34 @@ class Stops final : public Sink {
   Result<void> finish() override { return {}; }
 };
 
+/// The panels of the frame in which a hand is highest, as a picture.
+class RaisedHand final : public Sink {
+ public:
+  RaisedHand(std::filesystem::path path, TrackHeader header) : path_(std::move(path)), header_(std::move(header)) {}
+
+  Result<void> write(const TrackedFrame& frame) override {
+    constexpr double kRoomNearer = 1.3;  // of the range of depths, as hands come nearer than the first frame's surfaces
+    if (range_.empty()) range_ = roomy_range(frame.frame->disparity.d_q4, kRoomNearer);
+    for (const Person& person : frame.people)
+      for (const JointId id : {JointId::kRightHand, JointId::kLeftHand}) {
+        const Joint* hand = person.find(id);
+        if (hand == nullptr || hand->state != JointState::kSeen || hand->p_in_rig_m.y >= highest_m_) continue;
+        highest_m_ = hand->p_in_rig_m.y;
+        panels_ = draw_panels(frame, header_, range_);
+      }
+    return {};
+  }
+  bool wants_pictures() const override { return true; }
+  Result<void> finish() override { return panels_.empty() ? Result<void>() : write_png(panels_, path_); }
+
+ private:
+  std::filesystem::path path_;
+  TrackHeader header_;
+  DisparityRange range_;
+  double highest_m_ = std::numeric_limits<double>::infinity();  // y points down
+  Image<Rgb8> panels_;
+};
+
 /// A person in the room moves an arm, hides its hand behind the back and shows it again; the tracker follows.
 Result<void> track_person(const Options& options, const CLI::App& app) {
   const SyntheticClipSetup setup{.script = "behind"};
@@ -106,6 +135,10 @@ Result<void> track_person(const Options& options, const CLI::App& app) {
       DUO_TRY_ASSIGN(auto sink, make_panel_video(video, to.header(), note));
       if (!note.empty()) say(app, "warning: " + note);
       DUO_TRY(to.add_sink("signals", std::make_unique<Stops>()));
+      if (tracker == std::string_view("body")) {
+        const std::string picture = (std::filesystem::path(options.folder) / "body.png").string();
+        DUO_TRY(to.add_sink(picture, std::make_unique<RaisedHand>(picture, to.header())));
+      }
       return to.add_sink(video, std::move(sink));
     };
     DUO_TRY_ASSIGN(ClipScore score, score_clip(clip, truth, {.pipeline = std::move(pipeline), .add_sinks = add_video}));
@@ -117,7 +150,8 @@ Result<void> track_person(const Options& options, const CLI::App& app) {
       "2010\n");
   fmt::print("{}", text_of(scores));
   fmt::print(
-      "\nLook at {0}/body.mp4 (joints and bones, depth, regions, hue) and {0}/arm.mp4, and how {0}/thesis.mp4 loses the arm.\n",
+      "\nLook at {0}/body.png and {0}/body.mp4 (joints and bones, depth, body, hue), at {0}/arm.mp4,\n"
+      "and how {0}/thesis.mp4 loses the arm.\n",
       options.folder);
   return {};
 }
