@@ -182,7 +182,7 @@ double depth_of_joint_m(JointId id, double width_m, double away) {
     case kRightHip:
       return 0.34 * width_m + 0.03 * away;
     case kHead:
-      return 0.109;
+      return 0.104;
     case kLeftElbow:
     case kRightElbow:
       return 0.051;
