@@ -30,10 +30,10 @@ ivec2 tap(ivec2 at) {
             beyond = right_at(r + 2, at.y);
   const int e = 16 * left_at(at) - (here * (16 - f) + after * f);
   if (abs(e) >= 16 * kLucasKanadeMostDifference) return ivec2(0);
-  const int slope_q6 =
-      16 * (left_at(at + ivec2(1, 0)) - left_at(at - ivec2(1, 0))) + (after - before) * (16 - f) + (beyond - here) * f;
-  const int g_q2 = (slope_q6 + 8) >> 4;
-  return ivec2((g_q2 < 0 ? -e : e) * lucas_kanade_pull(abs(g_q2)), lucas_kanade_weight(abs(g_q2)));
+  const int l_q1 = left_at(at + ivec2(1, 0)) - left_at(at - ivec2(1, 0)), r_q5 = (after - before) * (16 - f) + (beyond - here) * f;
+  const int g_q2 = (16 * l_q1 + r_q5 + 8) >> 4, size = abs(g_q2);
+  const int weight = lucas_kanade_weight(max(l_q1 * r_q5, 0) >> 2, lucas_kanade_inverse(size));
+  return ivec2((g_q2 < 0 ? -e : e) * lucas_kanade_pull(size), weight);
 }
 
 int step_q4(int centre) {

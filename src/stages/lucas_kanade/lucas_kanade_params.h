@@ -19,11 +19,15 @@ DUO_INLINE int lucas_kanade_pull(int g_q2) {
   return (4096 * g_q2 + most / 2) / most;
 }
 
-// g^2 w + 1/20 in 2/5 of 1/1024: so the quotient of the sums is two and a half steps in 1/16 px.
-DUO_INLINE int lucas_kanade_weight(int g_q2) {
-  const int square = g_q2 * g_q2, most = square + 128;
-  return (410 * square + most / 2) / most + 20;
+// w in 4/9 of 1/2^19, of g >= 0: at most 29120, so that it fits 15 bits.
+DUO_INLINE int lucas_kanade_inverse(int g_q2) {
+  const int most = g_q2 * g_q2 + 128;
+  return ((455 << 13) + most / 2) / most;
 }
+
+// l r w + 1/20 in 4/9 of 1/1024: so the quotient of the sums is two and a quarter steps in 1/16 px. l r in 1/16 is not below 0,
+// and not above g^2.
+DUO_INLINE int lucas_kanade_weight(int lr_q4, int inverse) { return ((lr_q4 * inverse + (1 << 12)) >> 13) + 23; }
 
 #undef DUO_INLINE
 #ifdef __cplusplus

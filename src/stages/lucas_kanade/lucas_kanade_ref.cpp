@@ -23,9 +23,10 @@ LucasKanadeSums lucas_kanade_tap(const LucasKanade& in, int y, int x) {
   const std::uint8_t *const left = in.left.row(y) + x, *const right = in.right.row(y) + r;
   const int e = 16 * left[0] - (right[0] * (16 - f) + right[1] * f);
   if (std::abs(e) >= 16 * LucasKanade::kMostDifference) return {};
-  const int slope_q6 = 16 * (left[1] - left[-1]) + (right[1] - right[-1]) * (16 - f) + (right[2] - right[0]) * f;
-  const int g_q2 = (slope_q6 + 8) >> 4, size = std::abs(g_q2);
-  return {(g_q2 < 0 ? -e : e) * lucas_kanade_pull(size), lucas_kanade_weight(size)};
+  const int l_q1 = left[1] - left[-1], r_q5 = (right[1] - right[-1]) * (16 - f) + (right[2] - right[0]) * f;
+  const int g_q2 = (16 * l_q1 + r_q5 + 8) >> 4, size = std::abs(g_q2);
+  const int weight = lucas_kanade_weight(std::max(l_q1 * r_q5, 0) >> 2, lucas_kanade_inverse(size));
+  return {(g_q2 < 0 ? -e : e) * lucas_kanade_pull(size), weight};
 }
 
 void lucas_kanade(const LucasKanade& in, View<std::uint16_t> dst) {

@@ -18,11 +18,11 @@
 #ifndef DUO_LUCAS_KANADE_ONCE
 #define DUO_LUCAS_KANADE_ONCE
 namespace duo {
-/// Of each gradient pull | weight << 16.
-constexpr auto kPullAndWeight = [] {
+/// Of each gradient pull | inverse << 16.
+constexpr auto kPullAndInverse = [] {
   std::array<std::int32_t, LucasKanade::kMostGradient_q2 + 1> out{};
   for (int g = 0; g <= LucasKanade::kMostGradient_q2; ++g)
-    out[static_cast<std::size_t>(g)] = lucas_kanade_pull(g) | lucas_kanade_weight(g) << 16;
+    out[static_cast<std::size_t>(g)] = lucas_kanade_pull(g) | lucas_kanade_inverse(g) << 16;
   return out;
 }();
 }  // namespace duo
@@ -101,13 +101,16 @@ class Gradients {
                after = hn::And(hn::ShiftRight<16>(four), byte), beyond = hn::And(hn::ShiftRight<24>(four), byte);
     const auto e = hn::Sub(hn::ShiftLeft<4>(left_here), hn::Add(hn::Mul(here, rest), hn::Mul(after, f)));
     const auto counts = hn::And(inside, hn::Lt(hn::Abs(e), constant(16 * LucasKanade::kMostDifference)));
-    const auto slope_q6 = hn::Add(hn::ShiftLeft<4>(hn::Sub(left_after, left_before)),
-                                  hn::Add(hn::Mul(hn::Sub(after, before), rest), hn::Mul(hn::Sub(beyond, here), f)));
-    const auto g_q2 = hn::ShiftRight<4>(hn::Add(slope_q6, constant(8)));
-    const auto both = hn::IfThenElseZero(counts, hn::GatherIndex(d, kPullAndWeight.data(), hn::Abs(g_q2)));
+    const auto l_q1 = hn::Sub(left_after, left_before);
+    const auto r_q5 = hn::Add(hn::Mul(hn::Sub(after, before), rest), hn::Mul(hn::Sub(beyond, here), f));
+    const auto g_q2 = hn::ShiftRight<4>(hn::Add(hn::Add(hn::ShiftLeft<4>(l_q1), r_q5), constant(8)));
+    const auto both = hn::IfThenElseZero(counts, hn::GatherIndex(d, kPullAndInverse.data(), hn::Abs(g_q2)));
+    const auto lr_q4 = hn::ShiftRight<2>(hn::Max(hn::Mul(l_q1, r_q5), hn::Zero(d)));
+    const auto weight = hn::Add(hn::ShiftRight<13>(hn::Add(hn::Mul(lr_q4, hn::ShiftRight<16>(both)), constant(1 << 12))),
+                                constant(lucas_kanade_weight(0, 0)));
     const auto signed_e = hn::IfThenElse(hn::Lt(g_q2, hn::Zero(d)), hn::Neg(e), e);
     hn::StoreU(hn::Mul(signed_e, hn::And(both, constant(0xFFFF))), d, t_.pull.row(turn(y)) + kBefore + i);
-    hn::StoreU(hn::ShiftRight<16>(both), d, t_.weight.row(turn(y)) + kBefore + i);
+    hn::StoreU(hn::IfThenElseZero(counts, weight), d, t_.weight.row(turn(y)) + kBefore + i);
   }
 
   template <int kSign>

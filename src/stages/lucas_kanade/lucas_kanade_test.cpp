@@ -34,24 +34,28 @@ struct ZigzagPair {
   }
 };
 
-// By hand: 4096 * 64 / (64 * 64 + 128) = 62.06, 410 * 64 * 64 / (64 * 64 + 128) = 397.6;
-// 4096 * 8 / 192 = 170.7, 410 * 64 / 192 = 136.7.
+// By hand: 4096 * 64 / (64 * 64 + 128) = 62.06 and 4096 * 8 / 192 = 170.7; 455 * 8192 / 4224 = 882.4, / 192 = 19413.3;
+// 455 * 64 * 64 / 4224 = 441.2, 455 * 64 / 192 = 151.7, and a 20th of 455 is 22.75. Where one view has no gradient the other's is
+// noise, or the views differ: only the 20th is left.
 TEST(LucasKanade, GradientsCountAlmostAlike) {
   EXPECT_EQ(lucas_kanade_pull(0), 0);
-  EXPECT_EQ(lucas_kanade_weight(0), 20);
+  EXPECT_EQ(lucas_kanade_inverse(0), 29120);
+  EXPECT_EQ(lucas_kanade_weight(0, 29120), 23);
   EXPECT_EQ(lucas_kanade_pull(8), 171);
-  EXPECT_EQ(lucas_kanade_weight(8), 137 + 20);
+  EXPECT_EQ(lucas_kanade_inverse(8), 19413);
+  EXPECT_EQ(lucas_kanade_weight(64, 19413), 152 + 23);
   EXPECT_EQ(lucas_kanade_pull(64), 62);
-  EXPECT_EQ(lucas_kanade_weight(64), 398 + 20);
+  EXPECT_EQ(lucas_kanade_inverse(64), 882);
+  EXPECT_EQ(lucas_kanade_weight(64 * 64, 882), 441 + 23);
 }
 
-// By hand: column 8, whose taps are the columns 4, 6 .. 12. Going up e is -64, going down 64; g is 64, where both views turn 8.
-// So of five taps three have -64 * 62 and 418, two -64 * 171 and 157: in all -33792 and 1568, and (2 * 33792 / 1568 + 1) / 2 =
-// 22 sixteenths, of which 6 are taken: the turns say most.
+// By hand: column 8, whose taps are the columns 4, 6 .. 12. Going up e is -64, going down 64; g is 64, where the right view turns
+// 8, of the left view alone. So of five taps three have -64 * 62 and 464, two -64 * 171 and 23: in all -33792 and 1438, and
+// (2 * 33792 / 1438 + 1) / 2 = 23 sixteenths, of which 6 are taken: the turns say most.
 TEST(LucasKanade, StepsToWhereBothViewsAreAlike) {
   const ZigzagPair pair(2.25, 32);
   const LucasKanade in{pair.left, pair.right, pair.d_q4, 16};
-  const int pull[] = {-64 * 62, -64 * 171, -64 * 62, -64 * 171, -64 * 62}, weight[] = {418, 157, 418, 157, 418};
+  const int pull[] = {-64 * 62, -64 * 171, -64 * 62, -64 * 171, -64 * 62}, weight[] = {464, 23, 464, 23, 464};
   for (int i = 0; i < 5; ++i) {
     const LucasKanadeSums tap = ref::lucas_kanade_tap(in, 0, 4 + 2 * i);
     EXPECT_EQ(tap.pull, pull[i]) << i;
@@ -70,14 +74,14 @@ TEST(LucasKanade, IsHeld) {
 }
 
 // A shaded surface without any texture tells its place, too: -2 levels on a slope of 16 are an eighth of a pixel, and two
-// and a half times that: (2 * 32 * 62 / 418 + 1) / 2 = 5 sixteenths.
+// and a quarter times that: (2 * 32 * 62 / 464 + 1) / 2 = 4 sixteenths.
 TEST(LucasKanade, ShadingTellsThePlace) {
   ZigzagPair slope(2, 32);
   for (const int y : {0, 1})
     for (int x = 0; x < 14; ++x)
       slope.right.at(y, x) = static_cast<std::uint8_t>(16 * x),
                         slope.left.at(y, x) = static_cast<std::uint8_t>(std::max(16 * x - 34, 0));
-  EXPECT_EQ(slope.stepped().at(0, 8), 37);
+  EXPECT_EQ(slope.stepped().at(0, 8), 36);
 }
 
 TEST(LucasKanade, WhatSeesSomethingElseDoesNotCount) {
