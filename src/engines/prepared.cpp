@@ -15,6 +15,8 @@ constexpr Denoise kRawDenoise = Denoise::kGaussian;
 
 Error bad(std::string what) { return {ErrorCode::kBadInput, std::move(what)}; }
 
+bool denoises(const Prepared& prepared) { return prepared.median || prepared.gaussian || prepared.diffusion; }
+
 }  // namespace
 
 Result<Prepared> prepare_setup(const Setup& setup) {
@@ -57,12 +59,12 @@ Result<Prepared> prepare_setup(const Setup& setup) {
 }
 
 MatchSetup match_setup(const Prepared& prepared) {
-  return {prepared.size, prepared.setup.max_disparity, prepared.rectification.has_value(), prepared.stream,
-          prepared.setup.progress};
+  return {prepared.size,   prepared.setup.max_disparity, prepared.rectification.has_value(),
+          prepared.stream, prepared.setup.progress,      denoises(prepared)};
 }
 
 int coding_noise_q4(const Prepared& prepared, const Pair& pair) {
-  if (prepared.median || prepared.gaussian || prepared.diffusion) return 0;
+  if (denoises(prepared)) return 0;
   return std::max(pair.left.coding_noise_q4, pair.right.coding_noise_q4);
 }
 

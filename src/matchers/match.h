@@ -16,6 +16,7 @@ struct MatchSetup {
   bool masked = false;                                                    // pairs come with inside pictures
   std::shared_ptr<ClearStream> stream = std::make_shared<ClearStream>();  // shared by all who match pairs of one stream
   std::function<void(double done)> progress = {};                         // of matchers that take seconds; see Setup
+  bool denoised = false;  // pairs were smoothed before they were rectified, as raw ones are
 };
 
 /// Where the maps go. Confidence, of the matchers that tell it: 1 (doubtful) .. 255 (sure) where there is a disparity, else 0.

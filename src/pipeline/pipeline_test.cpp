@@ -125,10 +125,11 @@ TEST(Pipeline, OtherParametersOnTheWay) {
   }
 }
 
-TEST(Pipeline, TrackersGoWithoutTheLastFractionUnlessItIsNamed) {
+TEST(Pipeline, TrackersGetWhatTheyWereMeasuredOnUnlessItIsNamed) {
   duo::Setup wanted;
   wanted.matcher = "sgm";
-  const std::vector<std::pair<std::string, double>> without = {{"refine", 0}}, named = {{"refine", 0}, {"refine", 1}};
+  const std::vector<std::pair<std::string, double>> without = {{"refine", 0}, {"even", 0}},
+                                                    named = {{"refine", 0}, {"even", 0}, {"refine", 1}};
   EXPECT_EQ(setup_of_tracked(wanted).parameters, without);
   wanted.parameters = {{"refine", 1}};
   EXPECT_EQ(setup_of_tracked(wanted).parameters, named);  // the last one counts

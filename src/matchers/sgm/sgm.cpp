@@ -11,6 +11,8 @@ bool looks_clear(const SgmParams& params, int noise_q4, int blur_q4) {
 
 bool refines(const SgmParams& params, bool masked) { return params.refine == 2 || (params.refine == 1 && masked); }
 
+bool is_even(const SgmParams& params, bool denoised) { return params.even == 2 || (params.even == 1 && denoised); }
+
 void keep_confidence(View<const std::uint16_t> d_q4, int y, View<std::uint16_t> columns, View<std::uint8_t> confidence) {
   const int w = d_q4.width(), h = d_q4.height();
   std::uint16_t* const least = columns.row(0);

@@ -16,6 +16,7 @@ struct SgmParams {
   int census_truncation = SemiGlobalParams{}.census_truncation, truncation = SemiGlobalParams{}.truncation;
   int p1 = SemiGlobalParams{}.p1, p2 = SemiGlobalParams{}.p2, p2_least = SemiGlobalParams{}.p2_least;
   int p2_gradient = SemiGlobalParams{}.p2_gradient;
+  int even = 1;
   int tolerance = 1;
   int reach = 1;
   int speckle = 60;
@@ -24,7 +25,8 @@ struct SgmParams {
   int refine = 1;
 
   static constexpr int kMaxDisparity = 256;
-  SemiGlobalParams semi_global() const;
+  /// `even`: P2 is the same at all steps of gray.
+  SemiGlobalParams semi_global(bool even) const;
 };
 
 inline constexpr Parameter<SgmParams> kSgmParameters[] = {
@@ -40,6 +42,9 @@ inline constexpr Parameter<SgmParams> kSgmParameters[] = {
     {"p2", &SgmParams::p2, "", 0, 112, "penalty of a larger step where the picture is flat"},
     {"p2-least", &SgmParams::p2_least, "", 0, 112, "and where it is not, at least"},
     {"p2-gradient", &SgmParams::p2_gradient, "", 1, 255, "gray step that halves p2"},
+    {"even", &SgmParams::even, "", 0, 2,
+     "p2 the same at all gray steps, in pictures that are not clear: 0 never, as where people are tracked, 1 where they were "
+     "denoised here, as raw ones are, 2 always"},
     {"tolerance", &SgmParams::tolerance, "px", 0, 4, "left-right check: difference allowed"},
     {"reach", &SgmParams::reach, "px", 0, 4, "left-right check: columns beside the match that may confirm it"},
     {"speckle", &SgmParams::speckle, "px", 0, 10000, "islands of fewer pixels are removed"},

@@ -15,6 +15,7 @@ namespace duo::ref {
 Sgm::Sgm(const SgmParams& params, const MatchSetup& setup)
     : params_(params),
       max_disparity_(setup.max_disparity),
+      denoised_(setup.denoised),
       stream_(setup.stream),
       maps_(setup.size),
       left_(setup.size, 0),
@@ -40,6 +41,7 @@ Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<boo
 void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max_disparity, const Match& out,
                          StageTimer& timer) {
   clear_ = measured.clear;
+  even_ = is_even(params_, denoised_) && !clear_;
   const auto of_size = [size = pair.size()](auto& image) { return image.view().crop(0, 0, size); };
   const auto left_winner = of_size(maps_.left_winner), right_winner = of_size(maps_.right_winner);
   const auto softened = of_size(maps_.softened);

@@ -16,13 +16,14 @@ Sgm::Sgm(Pool& pool, const SgmParams& params, const MatchSetup& setup)
     : pool_(pool),
       params_(params),
       max_disparity_(setup.max_disparity),
+      denoised_(setup.denoised),
       stream_(setup.stream),
       maps_(setup.size),
       left_(setup.size,
             PlaneImages::kPadRight),  // as little as its stage takes: only the right view is looked up beside itself
       right_(setup.size, SemiGlobalScratch::padding(setup.max_disparity)),
       balance_scratch_(setup.size),
-      scratch_(setup.size, setup.max_disparity, params.semi_global(), pool.threads()),
+      scratch_(setup.size, setup.max_disparity, params.semi_global(false), pool.threads()),
       speckle_scratch_(setup.size),
       smooth_scratch_(setup.size),
       refine_scratch_(setup.size, pool.most()),
@@ -49,6 +50,7 @@ Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<boo
 void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max_disparity, const Match& out, StageTimer& timer,
                          RowBand rows) {
   clear_ = measured.clear;
+  even_ = is_even(params_, denoised_) && !clear_;
   const auto of_size = [size = pair.size()](auto& image) { return image.view().crop(0, 0, size); };
   const auto left_winner = of_size(maps_.left_winner), right_winner = of_size(maps_.right_winner);
   const auto softened = of_size(maps_.softened);
@@ -64,7 +66,7 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max
   const RowBand smoothed_rows = refine ? rows.grown(LucasKanade::kRows, h) : rows;
   const RowBand checked_rows = params_.smooth != 0 ? smoothed_rows.grown(WeightedMedian::kRadius, h) : smoothed_rows;
   const RowBand joined = checked_rows.grown(params_.speckle, h);
-  const SemiGlobalParams semi_global = params_.semi_global();
+  const SemiGlobalParams semi_global = params_.semi_global(even_);
   const int plane_rows = semi_global.upward ? h : joined.end;
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
     if (noise_q4 > 0) simd::bilateral(pool_, gray, bilateral_range(noise_q4), softened);

@@ -37,7 +37,8 @@ void expect_engines_agree(Size size, int max_disparity, int paths, bool masked, 
   GrayPair pair{scene.left, scene.right};
   pair.coding_noise_q4 = coding_noise_q4;
   if (masked) pair.left_inside = inside, pair.right_inside = inside;
-  const MatchSetup setup{size, max_disparity, masked};
+  MatchSetup setup{size, max_disparity, masked};
+  setup.denoised = masked;
   StageTimer timer;
   Image<std::uint16_t> want(size);
   Image<std::uint8_t> sure(size);
@@ -59,16 +60,18 @@ void expect_engines_agree(Size size, int max_disparity, int paths, bool masked, 
   });
 }
 
-TEST(Sgm, TheLastFractionIsOfPicturesThatWereRectifiedHere) {
+TEST(Sgm, TheLastFractionAndEvenPenaltiesAreOfPicturesThatWereRaw) {
   const Size size{90, 40};
   const BoxScene scene(size);
   const Image<std::uint8_t> inside = test::constant<std::uint8_t>(size, 255);
   StageTimer timer;
-  const auto matched = [&](int refine, bool masked) {
+  const auto matched_by = [&](const Overrides& overrides, bool masked) {
     GrayPair pair{scene.left, scene.right};
     if (masked) pair.left_inside = inside, pair.right_inside = inside;
     Image<std::uint16_t> out(size);
-    ref::Sgm(*sgm_params("default", {{"refine", refine}, {"clear", 0}}), {size, 20, masked}).match(pair, {out}, timer);
+    MatchSetup setup{size, 20, masked};
+    setup.denoised = masked;
+    ref::Sgm(*sgm_params("default", overrides), setup).match(pair, {out}, timer);
     return out;
   };
   const auto same = [](const Image<std::uint16_t>& a, const Image<std::uint16_t>& b) {
@@ -76,11 +79,18 @@ TEST(Sgm, TheLastFractionIsOfPicturesThatWereRectifiedHere) {
       if (!std::equal(a.row(y), a.row(y) + a.width(), b.row(y))) return false;
     return true;
   };
-  const Image<std::uint16_t> without = matched(0, true), with = matched(2, true);
-  EXPECT_FALSE(same(without, with));
-  EXPECT_TRUE(same(matched(1, true), with));
-  EXPECT_TRUE(same(matched(1, false), matched(0, false)));
-  EXPECT_FALSE(same(matched(2, false), matched(0, false)));
+  for (const char* name : {"refine", "even"}) {
+    const auto matched = [&](int value, bool masked, int clear = 0) {
+      return matched_by({{"refine", 0}, {"even", 0}, {name, value}, {"clear", clear}}, masked);
+    };
+    const Image<std::uint16_t> without = matched(0, true), with = matched(2, true);
+    EXPECT_FALSE(same(without, with)) << name;
+    EXPECT_TRUE(same(matched(1, true), with)) << name;
+    EXPECT_TRUE(same(matched(1, false), matched(0, false))) << name;
+    EXPECT_FALSE(same(matched(2, false), matched(0, false))) << name;
+    EXPECT_TRUE(same(matched(2, true, 2), matched(0, true, 2))) << name;  // clear pictures
+  }
+  EXPECT_TRUE(same(matched_by({{"even", 2}, {"clear", 0}}, false), matched_by({{"p2-least", 40}, {"clear", 0}}, false)));
 }
 
 // By hand (stages/types/noise.h): of 15 sixteenths of coding noise 15 (15 - 10) / 10 = 7.5 count, of 24 all, of 10 nothing. The

@@ -33,7 +33,7 @@ Result<Sgm> Sgm::make(Device& device, const SgmParams& params, const MatchSetup&
   DUO_TRY_ASSIGN(out.blur_, Blur::make(device));
   DUO_TRY_ASSIGN(out.bilateral_, Bilateral::make(device));
   DUO_TRY_ASSIGN(out.match_planes_, MatchPlanes::make(device));
-  DUO_TRY_ASSIGN(out.semi_global_, SemiGlobal::make(device, setup.max_disparity, params.semi_global()));
+  DUO_TRY_ASSIGN(out.semi_global_, SemiGlobal::make(device, setup.max_disparity, params.semi_global(false)));
   DUO_TRY_ASSIGN(out.check_left_right_, CheckLeftRight::make(device));
   DUO_TRY_ASSIGN(out.remove_speckle_, RemoveSpeckle::make(device));
   DUO_TRY_ASSIGN(out.weighted_median_, WeightedMedian::make(device));
@@ -48,7 +48,7 @@ Result<Sgm::Maps> Sgm::make_maps(Device& device, const SgmParams& params, const 
   const Size size = setup.size, planes = MatchPlanes::packed_size(size);
   Maps out;
   // First what may be too large.
-  DUO_TRY_ASSIGN(out.semi_global, SemiGlobal::Scratch::make(device, size, setup.max_disparity, params.semi_global()));
+  DUO_TRY_ASSIGN(out.semi_global, SemiGlobal::Scratch::make(device, size, setup.max_disparity, params.semi_global(false)));
   DUO_TRY_ASSIGN(out.balance, Balance::Scratch::make(device, size));
   DUO_TRY_ASSIGN(out.noise, Noise::make_scratch(device));
   DUO_TRY_ASSIGN(out.blur, Blur::make_scratch(device));
@@ -123,7 +123,7 @@ void Sgm::record_winners(Recorder& recorder, const Input& pair, BufferView<std::
   semi_global_.record(recorder, left, right, maps_.semi_global,
                       {whole<std::int16_t>(maps_.left_winner), whole<std::int16_t>(maps_.right_winner),
                        whole<std::uint16_t>(maps_.fine), margin},
-                      size);
+                      size, is_even(params_, setup_.denoised) ? &maps_.stream : nullptr);
   recorder.stage("semi_global");
 }
 

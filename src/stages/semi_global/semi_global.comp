@@ -92,6 +92,7 @@ uint pick() {
 }
 
 void walk(int y) {
+  const int p2_least = int(costs[p.height * p.width * p.words]);
   begin_path();
   for (int k = 0; k < kWords; ++k) right_least[k] = uvec4(kNone);
   load(y, p.width - 1);
@@ -101,7 +102,7 @@ void walk(int y) {
     for (int k = 0; k < kWords; ++k) cost[k] = cost_ahead[k];
     for (int i = 0; i < kVolumes * kWords; ++i) sums[i] = sums_ahead[i];
     if (x > 0) load(y, x - 1);
-    const int p2 = max(p.p2_least, p.p2 * p.p2_gradient / (p.p2_gradient + abs(gray_here - gray_before)));
+    const int p2 = max(p2_least, p.p2 * p.p2_gradient / (p.p2_gradient + abs(gray_here - gray_before)));
     advance(uint(p.p1), uint(p2));
     total();
     const int right = offer_to_right();

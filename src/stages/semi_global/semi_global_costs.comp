@@ -3,12 +3,14 @@
 #include "stages/semi_global/semi_global_params.h"
 
 // Costs C(x, d) of all pixels, as bytes [y][x][d], d filled up with 255 to a multiple of four. An invocation walks along a row with
-// one word of disparities, so that of the four right pixels it compares with only one is new in each step.
+// one word of disparities, so that of the four right pixels it compares with only one is new in each step. The word behind the last
+// one is the least P2 of all paths.
 // For W x H x D cells: writes W H D bytes, reads 24 bytes for four cells, nearly all from the cache; 40 operations a cell.
 layout(local_size_x = kCostGroup) in;
 layout(std430, binding = 0) readonly buffer Left { uint left_planes[]; };
 layout(std430, binding = 1) readonly buffer Right { uint right_planes[]; };
 layout(std430, binding = 2) writeonly buffer Costs { uint costs[]; };
+layout(std430, binding = 3) readonly buffer Clear { int known; };  // above 0: clear pictures
 layout(push_constant) uniform Push { SemiGlobalCostsPush p; };
 
 struct Pixel {
@@ -44,6 +46,8 @@ void main() {
   const int y = int(gl_WorkGroupID.y), i = int(gl_GlobalInvocationID.x);
   const int word = i % p.words, first = i / p.words * kCostRun, d = 4 * word;
   if (first >= p.width) return;
+  if (y == 0 && i == 0)
+    costs[p.height * p.width * p.words] = p.p2_least_unclear != p.p2_least && known <= 0 ? uint(p.p2_least_unclear) : uint(p.p2_least);
   Pixel r0, r1 = right_pixel(y, first - d - 1), r2 = right_pixel(y, first - d - 2), r3 = right_pixel(y, first - d - 3);
   for (int x = first; x < min(first + kCostRun, p.width); ++x) {
     const Pixel l = left_pixel(y, x);

@@ -17,13 +17,14 @@ struct SemiGlobalCostsPush {
   int width, height;
   int max_disparity, words;  // of a pixel in a volume: four disparities each
   int census_most, most;
+  int p2_least, p2_least_unclear;
 };
 
 struct SemiGlobalPathPush {
   Plane left;
   int width, height;
   int words;
-  int p1, p2, p2_least, p2_gradient;
+  int p1, p2, p2_gradient;
   int dx, dy;  // one step along the path
   int adds;    // 0 or 1: to what the volume holds
 };
@@ -32,7 +33,7 @@ struct SemiGlobalPush {
   Plane left, right_winner;
   int width, height;
   int words;
-  int p1, p2, p2_least, p2_gradient;
+  int p1, p2, p2_gradient;
   int wants_margin;  // 0 or 1
 };
 

@@ -37,6 +37,7 @@ void store(ivec2 at) {
 }
 
 void walk(int line) {
+  const int p2_least = int(costs[p.height * p.width * p.words]);
   const int steps = p.dy == 0 ? p.width : p.height;
   ivec2 at = p.dy == 0 ? ivec2(p.dx > 0 ? 0 : p.width - 1, line) : ivec2(line, p.dy > 0 ? 0 : p.height - 1);
   begin_path();
@@ -53,7 +54,7 @@ void walk(int line) {
     const bool leaves = at.x < 0 || at.x >= p.width;
     if (leaves) at.x = at.x < 0 ? p.width - 1 : 0;
     if (i + 1 < steps) load(at);
-    const int p2 = max(p.p2_least, p.p2 * p.p2_gradient / (p.p2_gradient + abs(gray_here - gray_before)));
+    const int p2 = max(p2_least, p.p2 * p.p2_gradient / (p.p2_gradient + abs(gray_here - gray_before)));
     advance(uint(p.p1), uint(p2));
     store(here);
     gray_before = gray_here;

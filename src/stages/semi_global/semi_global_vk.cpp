@@ -38,14 +38,15 @@ Result<SemiGlobal::Scratch> SemiGlobal::Scratch::make(const Device& device, Size
   out.words_ = words_for(max_disparity);
   const auto pixels = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
   const std::size_t bytes = pixels * static_cast<std::size_t>(out.words_) * sizeof(std::uint32_t);
-  if (bytes > Buffer::kMaxBytes)
+  const std::size_t with_penalty = bytes + sizeof(std::uint32_t);
+  if (with_penalty > Buffer::kMaxBytes)
     return Error{
         ErrorCode::kBadInput,
         fmt::format("set up semi-global matching on {}: {}x{} pixels with {} disparities take {} MiB a direction, more "
                     "than the {} MiB of a buffer; choose at most {} disparities, or smaller pictures",
                     device.info().name, size.width, size.height, max_disparity, bytes >> 20, Buffer::kMaxBytes >> 20,
                     Buffer::kMaxBytes / pixels / 4 * 4)};
-  DUO_TRY_ASSIGN(out.costs_, Buffer::make(device, "semi-global costs", bytes, Memory::kDevice));
+  DUO_TRY_ASSIGN(out.costs_, Buffer::make(device, "semi-global costs", with_penalty, Memory::kDevice));
   DUO_TRY_ASSIGN(out.found_, Buffer::make(device, "semi-global winners", pixels * sizeof(std::uint32_t), Memory::kDevice));
   for (int i = 0; i < volumes_for(params); ++i) {
     DUO_TRY_ASSIGN(Buffer volume, Buffer::make(device, fmt::format("semi-global paths {}", i), bytes, Memory::kDevice));
@@ -65,7 +66,7 @@ Result<SemiGlobal> SemiGlobal::make(const Device& device, int max_disparity, con
   const auto lane_words = static_cast<std::uint32_t>((words + lanes - 1) / lanes);
   const std::uint32_t constants[] = {lane_words, static_cast<std::uint32_t>(volumes_for(params))};
   const std::span path_constants(constants, 1);
-  DUO_TRY_ASSIGN(out.costs_, Kernel::make(device, {"semi-global costs", kCostsCode, 3, sizeof(SemiGlobalCostsPush)}));
+  DUO_TRY_ASSIGN(out.costs_, Kernel::make(device, {"semi-global costs", kCostsCode, 4, sizeof(SemiGlobalCostsPush)}));
   DUO_TRY_ASSIGN(out.path_,
                  Kernel::make(device, {"semi-global path", kPathCode, 3, sizeof(SemiGlobalPathPush), path_constants, lanes}));
   DUO_TRY_ASSIGN(out.winners_,
@@ -75,7 +76,8 @@ Result<SemiGlobal> SemiGlobal::make(const Device& device, int max_disparity, con
 }
 
 void SemiGlobal::record(Recorder& recorder, BufferView<std::uint32_t> left, BufferView<std::uint32_t> right,
-                        const Scratch& scratch, const Match& out, Size size) const {
+                        const Scratch& scratch, const Match& out, Size size,
+                        const Buffer* even_unless_clear) const {
   const Size planes{size.width, kPackedPlanes * size.height};
   DUO_CHECK(left.holds(planes) && right.holds(planes) && out.left.holds(size) && out.right.holds(size) && out.fine.holds(size));
   DUO_CHECK(out.margin.absent() || out.margin.holds(size));
@@ -83,9 +85,12 @@ void SemiGlobal::record(Recorder& recorder, BufferView<std::uint32_t> left, Buff
             static_cast<int>(scratch.volumes_.size()) == volumes_for(params_));
   const int runs = (size.width + kCostRun - 1) / kCostRun, invocations = runs * scratch.words_;
   const SemiGlobalCostsPush costs{
-      left.plane,        right.plane, size.width, size.height, max_disparity_, scratch.words_, params_.census_truncation,
-      params_.truncation};
-  recorder.dispatch(costs_, costs, {reads(left), reads(right), writes(scratch.costs_)},
+      left.plane, right.plane, size.width, size.height, max_disparity_, scratch.words_, params_.census_truncation,
+      params_.truncation, params_.p2_least, even_unless_clear != nullptr ? params_.p2 : params_.p2_least};
+  // Every binding needs a buffer; one that is not looked at stands in.
+  recorder.dispatch(costs_, costs,
+                    {reads(left), reads(right), writes(scratch.costs_),
+                     even_unless_clear != nullptr ? reads(*even_unless_clear) : reads(left)},
                     {(invocations + kCostGroup - 1) / kCostGroup, size.height});
 
   // The directions of one pass share no volume, so that no barrier keeps them from running at the same time.
@@ -107,7 +112,7 @@ void SemiGlobal::record_path(Recorder& recorder, BufferView<std::uint32_t> left,
                              const Buffer& volume, bool adds) const {
   const Size size = scratch.size_;
   const SemiGlobalPathPush push{
-      left.plane, size.width, size.height, scratch.words_, params_.p1, params_.p2, params_.p2_least, params_.p2_gradient,
+      left.plane, size.width, size.height, scratch.words_, params_.p1, params_.p2, params_.p2_gradient,
       dx,         dy,         adds};
   recorder.dispatch(path_, push, {reads(scratch.costs_), reads(left), writes(volume)},
                     groups_for_paths(dy == 0 ? size.height : size.width));
@@ -118,7 +123,7 @@ void SemiGlobal::record_winners(Recorder& recorder, BufferView<std::uint32_t> le
   const Size size = scratch.size_;
   const bool wants_margin = !out.margin.absent();
   const SemiGlobalPush push{left.plane, out.right.plane, size.width,       size.height,         scratch.words_,
-                            params_.p1, params_.p2,      params_.p2_least, params_.p2_gradient, wants_margin};
+                            params_.p1, params_.p2, params_.p2_gradient, wants_margin};
   const auto volume = [&](std::size_t i) { return reads(scratch.volumes_[std::min(i, scratch.volumes_.size() - 1)]); };
   recorder.dispatch(winners_, push,
                     {reads(scratch.costs_), reads(left), volume(0), volume(1), volume(2), volume(3), writes(scratch.found_),

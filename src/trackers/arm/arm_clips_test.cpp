@@ -83,7 +83,7 @@ class Clip {
     setup.rig = rig;
     setup.matcher = matcher;
     setup.wants.color = true;
-    if (setup.matcher == "sgm") setup.parameters = {{"refine", 0}};  // as for all trackers
+    if (setup.matcher == "sgm") setup.parameters = {{"refine", 0}, {"even", 0}};  // as for all trackers
     DUO_TRY(engine_->prepare(setup));
     truth_ = read_truth(folder / "truth.json");
     return {};

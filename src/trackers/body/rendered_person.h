@@ -38,7 +38,7 @@ struct RenderedPerson {
     setup.rig = rig;
     setup.max_disparity = 64;
     setup.wants.color = true;
-    setup.parameters = {{"refine", 0}};  // as for all trackers
+    setup.parameters = {{"refine", 0}, {"even", 0}};  // as for all trackers
     const auto prepared = (*engine)->prepare(setup);
     EXPECT_TRUE(prepared) << (prepared ? "" : prepared.error().what);
     rectified = *(*engine)->rectified();
