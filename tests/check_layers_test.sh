@@ -26,6 +26,8 @@ breach apps/duoptic/a.cpp '#include "core/pool.h"\n' 'sees only include/duoptic'
 breach include/duoptic/a.h '#include "core/pool.h"\n' 'public header'
 breach include/duoptic/b.h 'namespace duo {\nclass Hidden;\nclass Shown;\nclass Shown {};\n}\n' 'shows the private type Hidden'
 breach src/core/long.cpp "$(printf '\\n%.0s' {1..400})" '400 lines'
+breach src/sinks/c.cpp 'out = json.dump();\n' 'json_text'
+breach src/bench/c.cpp 'out = json.dump(2);\n' 'json_text'
 # What is allowed is let pass.
 rm -rf "${folder:?}"/*
 mkdir -p "$folder"/src/{stages/a,trackers,engines} "$folder"/include/duoptic

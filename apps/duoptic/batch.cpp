@@ -43,16 +43,17 @@ BatchTool this_tool(const Options& options) {
 }
 
 Result<Exit> plan(Options options, const CLI::App& app) {
-  if (fs::exists(fs::path(options.folder) / "manifest.jsonl") && !options.force)
+  std::error_code error;
+  if (fs::exists(fs::path(options.folder) / "manifest.jsonl", error) && !options.force)
     return Error{ErrorCode::kWriteFailed,
                  fmt::format("cannot plan into {}: it has a manifest already; edit that, or replace it with --force; results "
                              "whose inputs and options stay the same are kept",
                              options.folder)};
-  std::error_code error;
   if (fs::equivalent(options.archive, options.folder, error))
     throw CLI::ValidationError("-o", "the archive itself is no place for results; name another folder, also one in it");
   options.wish.command = options.depth ? "depth" : "track";
-  if (!options.wish.rig.empty()) options.wish.rig = fs::absolute(options.wish.rig).lexically_normal();
+  if (!options.wish.rig.empty())
+    if (const fs::path rig = fs::absolute(options.wish.rig, error); !error) options.wish.rig = rig.lexically_normal();
   DUO_TRY_ASSIGN(const ArchivePlan plan, plan_archive(options.archive, options.wish));
   if (plan.tasks.empty())
     return Error{ErrorCode::kNotFound, fmt::format("cannot plan {}: no two of its videos are a pair", options.archive)};

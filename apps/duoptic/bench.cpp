@@ -95,7 +95,7 @@ Result<Exit> run(const Options& options) {
     DUO_TRY_ASSIGN(const std::string networks, bench_networks(engine, options.repeat, say));
     out.push_back({{"networks", nlohmann::json::parse(networks)}});
   }
-  if (options.json) fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (options.json) print_json(out);
   return Exit::kOk;
 }
 

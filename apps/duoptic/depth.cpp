@@ -132,21 +132,32 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
   progress.expect(pipeline.count());
   if (pipeline.live()) Interrupt::is_the_end();
   RunNews news(app);
+  // A run that fails is worth what it has.
+  const auto with_what_is_left = [&](Error error) {
+    const bool refused = options.check == RigCheck::kStrict && pipeline.rig_fit() && !pipeline.rig_fit()->what.empty();
+    if (!refused) static_cast<void>(out.finish());
+    if (const std::size_t frames = summary.ms.size(); frames > 0 && !out.paths().empty())
+      error.what += fmt::format("; the {} frame{} before {} in {}", frames, frames == 1 ? "" : "s", frames == 1 ? "is" : "are",
+                                options.folder);
+    return error;
+  };
   while (!Interrupt::asked()) {
-    DUO_TRY_ASSIGN(summary.end, pipeline.next());
+    const Result<Next> next = pipeline.next();
+    if (!next) return with_what_is_left(next.error());
+    summary.end = *next;
     news.see(pipeline);
     if (summary.end == Next::kNothing) continue;
     if (summary.end != Next::kNew) break;
     beyond = static_cast<std::int64_t>(pipeline.pair()->sequence) >= range.end;
     if (beyond) break;
     if (const std::string event = pipeline.event(); !event.empty()) say(app, "warning: " + event);
+    const std::uint64_t number = pipeline.pair()->sequence;
+    if (pipeline.rig_fit()) out.set_disparity_sigma_px(pipeline.rig_fit()->disparity_sigma_px);
+    if (const auto written = out.write(pipeline.frame(), number, pipeline.tracked().t_s); !written)
+      return with_what_is_left(written.error());
     summary.ms.push_back(pipeline.times().engine_ms);
     summary.coverage_sum += coverage(*pipeline.frame());
     within_far.see(pipeline.frame()->depth_mm);
-
-    const std::uint64_t number = pipeline.pair()->sequence;
-    if (pipeline.rig_fit()) out.set_disparity_sigma_px(pipeline.rig_fit()->disparity_sigma_px);
-    DUO_TRY(out.write(pipeline.frame(), number, pipeline.tracked().t_s));
     progress.frame(static_cast<std::int64_t>(number) + 1);
   }
   if (summary.ms.empty() && !options.range.empty() && !beyond && summary.end == Next::kEnd)

@@ -43,7 +43,15 @@ Result<Next> record_all(Pipeline& pipeline, const Options& options, const CLI::A
   RunNews news(app);
   Next next = Next::kNew;
   while (!Interrupt::asked() && pipeline.recording().on && next != Next::kEnd && next != Next::kCut) {
-    DUO_TRY_ASSIGN(next, pipeline.next());
+    const Result<Next> got = pipeline.next();
+    if (!got) {
+      pipeline.stop_recording();
+      const std::int64_t pairs = pipeline.recording().pairs;
+      if (pairs == 0 || pipeline.recording_failure()) return got.error();
+      return Error{got.error().code, fmt::format("{}; {} has the {} pair{} before", got.error().what, options.output, pairs,
+                                                 pairs == 1 ? "" : "s")};
+    }
+    next = *got;
     news.see(pipeline);
     progress.frame(pipeline.recording().pairs);
     if (by_clock && clock_ms(CLOCK_MONOTONIC) - start_ms >= options.seconds * 1000 + kGrace_ms) break;

@@ -1,6 +1,7 @@
 // duoptic track: two videos or cameras and clicks on joints in, persons in 3D out.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -102,6 +103,29 @@ struct Summary {
   Next end = Next::kEnd;
 };
 
+/// Completes the outputs. The error, that of the run before or the first of theirs, names those that hold its frames all the same.
+Result<void> complete_outputs(Pipeline& pipeline, std::size_t frames, Result<void> first = {}) {
+  std::vector<std::string> files;
+  for (const std::string& name : pipeline.sink_names()) {
+    const auto finished = pipeline.finish_sink(name);
+    std::error_code none;
+    if (finished && std::filesystem::is_regular_file(name, none)) files.push_back(name);
+    if (!finished && first) first = finished;
+  }
+  if (first || files.empty()) return first;
+  return Error{first.error().code, fmt::format("{}; {} frame{} {} in {}", first.error().what, frames, frames == 1 ? "" : "s",
+                                               frames == 1 ? "is" : "are", fmt::join(files, ", "))};
+}
+
+/// A run that fails is worth what it has. A rig that was refused leaves nothing.
+Error failed_after(Pipeline& pipeline, std::size_t frames, const Error& error, const Options& options) {
+  const auto& fit = pipeline.rig_fit();
+  const bool refused = options.check == RigCheck::kStrict && fit && !fit->what.empty();
+  if (frames > 0 && !refused) return complete_outputs(pipeline, frames, error).error();
+  static_cast<void>(pipeline.flush_sinks());  // the first error counts
+  return error;
+}
+
 /// Tracks from the first frame to the end of the files, or to Ctrl-C.
 Result<Summary> track_all(Pipeline& pipeline, Events& events, std::span<const Selection> selections, const Options& options,
                           const CLI::App& app) {
@@ -114,7 +138,8 @@ Result<Summary> track_all(Pipeline& pipeline, Events& events, std::span<const Se
   Progress progress(app, pipeline.count(), options.quiet);
   SkewWatch skew(pipeline.header().rectified.baseline_m);
   while (true) {
-    DUO_TRY(pipeline.write());
+    if (const auto written = pipeline.write(); !written)
+      return failed_after(pipeline, summary.frames, written.error(), options);
     const TrackedFrame frame = pipeline.tracked();
     if (summary.frames++ < Summary::kTimes) {
       summary.engine_ms.push_back(pipeline.times().engine_ms);
@@ -126,14 +151,11 @@ Result<Summary> track_all(Pipeline& pipeline, Events& events, std::span<const Se
     events.look_at(pipeline);
     if (const auto warning = pipeline.live() ? skew.see(frame) : std::nullopt) say(app, "warning: " + *warning);
     const Result<Next> next = next_frame(pipeline, events);
-    if (!next) {
-      static_cast<void>(pipeline.flush_sinks());  // the first error counts
-      return next.error();
-    }
+    if (!next) return failed_after(pipeline, summary.frames, next.error(), options);
     summary.end = *next;
     if (summary.end != Next::kNew) break;
   }
-  DUO_TRY(pipeline.finish_sinks());
+  DUO_TRY(complete_outputs(pipeline, summary.frames));
   return summary;
 }
 

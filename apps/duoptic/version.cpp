@@ -30,7 +30,7 @@ Result<Exit> run(bool json) {
             {{"name", d.name}, {"type", d.type}, {"driver", d.driver}, {"api", d.api_version}, {"lacks", d.lacks}});
     else
       out["vulkan_missing"] = devices.error().what;
-    fmt::print("{}\n", out.dump(2));
+    print_json(out);
     return Exit::kOk;
   }
   fmt::print("duoptic {}\ncompiler  {}\nOpenCV    {}\nSIMD      {}\n", DUO_VERSION, __VERSION__, opencv_version(),

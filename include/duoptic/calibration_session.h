@@ -17,9 +17,10 @@
 namespace [[gnu::visibility("default")]] duo {
 
 struct CalibrationSessionSetup {
-  std::string left_name, right_name;                          // of the cameras, in the rig
-  std::function<Result<std::unique_ptr<PairSource>>()> open;  // the source again: a file is read from its start
-  std::function<void()> on_news = [] {};                      // called in the thread when there is something new to show
+  std::string left_name, right_name;  // of the cameras, in the rig
+  // The source again: a file is read from its start. Empty: of files no other board can be chosen.
+  std::function<Result<std::unique_ptr<PairSource>>()> open = {};
+  std::function<void()> on_news = [] {};  // called in the thread when there is something new to show; may be empty
 };
 
 enum class SessionState : std::uint8_t { kLooking, kSolving, kSolved, kEnded };

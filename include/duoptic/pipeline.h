@@ -128,6 +128,8 @@ class Pipeline {
   ///
   /// Errors  those of Sink::flush()
   Result<void> flush_sinks();
+  /// Of the outputs that there still are.
+  std::vector<std::string> sink_names() const;
   /// Completes one output, or all.
   ///
   /// Errors  those of Sink::finish()

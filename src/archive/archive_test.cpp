@@ -89,6 +89,22 @@ TEST(PlanArchive, PairsRecordingsAndTheirRigs) {
   EXPECT_NE(plan_archive(folder / "empty", {}).error().what.find("no video"), std::string::npos);
 }
 
+TEST(PlanArchive, NamesThatAManifestCannotHoldAndLinksThatNobodyCanFollow) {
+  const TempFolder folder;
+  const fs::path archive = folder / "archive";
+  for (const char* name : {"a.mkv", "caf\xe9.mkv"}) put(archive / name);
+  for (const char* name : {"a_rig.json", "rig.json"}) fs::create_symlink(name, archive / name);  // to itself
+  const auto plan = plan_archive(archive, {});
+  ASSERT_TRUE(plan) << plan.error().what;
+  ASSERT_EQ(plan->tasks.size(), 1u);
+  EXPECT_EQ(plan->tasks[0].rig, "");
+  ASSERT_EQ(plan->left_out.size(), 1u);
+  EXPECT_NE(plan->left_out[0].find("no UTF-8"), std::string::npos) << plan->left_out[0];
+  EXPECT_NE(plan_archive(archive, {.rig = "\xff.json"}).error().what.find("no UTF-8"), std::string::npos);
+  fs::rename(archive, folder / "\xe9t\xe9");
+  EXPECT_NE(plan_archive(folder / "\xe9t\xe9", {}).error().what.find("no UTF-8"), std::string::npos);
+}
+
 TEST(PlanArchive, DepthByRangesThatMeet) {
   const TempFolder folder;
   const fs::path archive = folder / "archive";

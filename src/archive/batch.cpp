@@ -98,7 +98,7 @@ Result<std::vector<ArchiveTask>> read_manifest(const fs::path& out) {
 Result<Batch> Batch::open(const fs::path& given, const std::string& version,
                           const std::function<void(std::int64_t)>& progress) {
   Batch batch;
-  batch.out_ = fs::absolute(given).lexically_normal();
+  batch.out_ = whole_path(given);
   if (!batch.out_.has_filename()) batch.out_ = batch.out_.parent_path();  // "out/"
   DUO_TRY_ASSIGN(batch.tasks_, read_manifest(batch.out_));
   Hashes hashes(batch.out_ / kHashes);

@@ -6,6 +6,7 @@
 
 #include "archive/layout.h"
 #include "core/file.h"
+#include "core/json_text.h"
 
 namespace duo {
 namespace {
@@ -149,7 +150,7 @@ Result<std::vector<fs::path>> collect(const Batch& batch) {
   nlohmann::json table = nlohmann::json::array();
   for (const auto& [id, row] : rows) table.push_back(to_json(id, row));
   const fs::path json = batch.folder() / "table.json", csv = batch.folder() / "table.csv";
-  DUO_TRY(write_file(json, table.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"));
+  DUO_TRY(write_file(json, json_text(table, 1) + "\n"));
   DUO_TRY(write_file(csv, csv_of(rows)));
   return std::vector<fs::path>{json, csv};
 }

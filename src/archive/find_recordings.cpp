@@ -6,6 +6,8 @@
 #include <map>
 #include <set>
 
+#include "archive/layout.h"
+#include "core/json_text.h"
 #include "duoptic/archive.h"
 #include "duoptic/source.h"
 #include "sources/recording.h"
@@ -82,11 +84,11 @@ fs::path partner(const fs::path& path, bool is_left, const std::set<fs::path>& f
 fs::path rig_of(const fs::path& archive, const fs::path& id, const fs::path& first_input, std::map<fs::path, fs::path>& known) {
   const fs::path beside = archive / first_input.parent_path();
   for (const std::string ending : {"_rig.json", ".rig.json", "_rig.yml", ".rig.yml"})
-    if (const fs::path own = beside / (id.filename().string() + ending); fs::is_regular_file(own)) return own;
+    if (const fs::path own = beside / (id.filename().string() + ending); is_file(own)) return own;
   const auto in = [&](const fs::path& folder) {
     const auto [at, is_new] = known.try_emplace(folder);
     for (std::size_t i = 0; is_new && i < std::size(kRigNames) && at->second.empty(); ++i)
-      if (fs::is_regular_file(archive / folder / kRigNames[i])) at->second = archive / folder / kRigNames[i];
+      if (is_file(archive / folder / kRigNames[i])) at->second = archive / folder / kRigNames[i];
     return at->second;
   };
   for (fs::path folder = first_input.parent_path();; folder = folder.parent_path()) {
@@ -157,6 +159,11 @@ std::vector<std::string> arguments_of(const ArchiveWish& wish) {
   return words;
 }
 
+/// A manifest can name nothing else.
+bool is_utf8(const std::string& text) {
+  return nlohmann::json::parse(json_text(nlohmann::json(text), -1)).get<std::string>() == text;
+}
+
 }  // namespace
 
 Result<ArchivePlan> plan_archive(const fs::path& given, const ArchiveWish& wish) {
@@ -165,6 +172,10 @@ Result<ArchivePlan> plan_archive(const fs::path& given, const ArchiveWish& wish)
   if (error || !fs::is_directory(archive, error))
     return Error{ErrorCode::kNotFound,
                  fmt::format("cannot read archive '{}': {}", given.string(), error ? error.message() : "it is no folder")};
+  if (!is_utf8(archive) || !is_utf8(wish.rig))
+    return Error{ErrorCode::kBadInput, fmt::format("cannot plan '{}': a name with bytes that are no UTF-8 cannot be in a manifest; "
+                                                   "rename it",
+                                                   is_utf8(archive) ? wish.rig : archive.string())};
   DUO_TRY_ASSIGN(const std::set<fs::path> videos, videos_in(archive));
   const std::vector<std::string> arguments = arguments_of(wish);
   ArchivePlan plan;
@@ -181,9 +192,14 @@ Result<ArchivePlan> plan_archive(const fs::path& given, const ArchiveWish& wish)
       plan.left_out.push_back(fmt::format("{}: its name says that it is one side, and the other is not there", video.string()));
       continue;
     }
+    task.rig = wish.rig.empty() ? rig_of(archive, id, video, known_rigs).string() : wish.rig;
+    if (!std::all_of(task.inputs.begin(), task.inputs.end(), is_utf8) || !is_utf8(task.rig)) {
+      plan.left_out.push_back(
+          fmt::format("{}: a name with bytes that are no UTF-8 cannot be in a manifest; rename it", video.string()));
+      continue;
+    }
     task.id = id;
     if (ids[task.id]++ > 0) task.id += video.extension().string();
-    task.rig = wish.rig.empty() ? rig_of(archive, id, video, known_rigs).string() : wish.rig;
     if (wish.rig.empty() && task.inputs.size() == 1 && lowercase(video.extension()) == ".mkv")
       if (const auto tracks = open_two_tracks(archive / video); tracks && tracks->container)
         if (const auto own = tracks->rig(video); own && *own) task.rig.clear();

@@ -12,6 +12,7 @@
 
 #include "archive/sha256.h"
 #include "core/file.h"
+#include "core/json_text.h"
 
 namespace duo {
 
@@ -58,7 +59,18 @@ nlohmann::json read_json_object(const fs::path& path) {
 }
 
 std::string text_of(const nlohmann::json& json) {
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json_text(json, -1) + "\n";
+}
+
+fs::path whole_path(const fs::path& path) {
+  std::error_code error;
+  const fs::path whole = fs::absolute(path, error);
+  return (error ? path : whole).lexically_normal();
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
 }
 
 Result<void> make_folder(const fs::path& path) {

@@ -26,6 +26,11 @@ nlohmann::json read_json_object(const std::filesystem::path& path);
 /// One line.
 std::string text_of(const nlohmann::json& json);
 
+/// From the root on, without "." and ".."; as it is where the folder that we are in is gone.
+std::filesystem::path whole_path(const std::filesystem::path& path);
+/// False where there is none, or nobody may look.
+bool is_file(const std::filesystem::path& path);
+
 /// Errors  the folder cannot be made
 Result<void> make_folder(const std::filesystem::path& path);
 /// What is in a folder, in order; nothing where there is none.

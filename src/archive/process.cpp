@@ -91,7 +91,10 @@ void Process::send(int signal) const {
 }
 
 Result<Answer> ask(const std::vector<std::string>& words) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("duoptic-" + random_name());
+  std::error_code error;
+  const std::filesystem::path temporary = std::filesystem::temp_directory_path(error);
+  if (error) return Error{ErrorCode::kWriteFailed, "cannot write temporary files: TMPDIR names no folder"};
+  const std::filesystem::path folder = temporary / ("duoptic-" + random_name());
   DUO_TRY(make_folder(folder));
   const std::filesystem::path out = folder / "out", err = folder / "err";
   Answer answer;
@@ -102,7 +105,6 @@ Result<Answer> ask(const std::vector<std::string>& words) {
       answer.out = read_file(out, kMostText, "answer").has_value() ? *read_file(out, kMostText, "answer") : "";
       answer.err = read_file(err, kMostText, "answer").has_value() ? *read_file(err, kMostText, "answer") : "";
     }
-    std::error_code error;
     std::filesystem::remove_all(folder, error);
     if (!process) return process.error();
   }

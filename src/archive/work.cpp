@@ -106,7 +106,7 @@ Result<std::string> sums_of(const fs::path& results) {
   std::error_code error;
   for (fs::recursive_directory_iterator at(results, error); !error && at != fs::recursive_directory_iterator();
        at.increment(error)) {
-    if (at->is_directory()) {
+    if (at->is_directory(error)) {
       DUO_TRY(sync_folder(at->path()));
       continue;
     }
@@ -183,7 +183,7 @@ Worked failed(const ArchiveTask& task, const WorkFolder& folder, int exit) {
 
 Result<Worked> work_on(const fs::path& given, const std::string& key, const BatchTool& tool,
                        const std::function<bool()>& stopped) {
-  const fs::path out = fs::absolute(given).lexically_normal();
+  const fs::path out = whole_path(given);
   DUO_TRY_ASSIGN(const ArchiveTask task, find_task(out, key));
   if (task.inputs.empty())
     return Error{ErrorCode::kNotFound, fmt::format("cannot work on {}: no task of {} has this key", key, out.string())};

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/bench_lines.h"
+#include "core/json_text.h"
 #include "duoptic/calibrate.h"
 #include "duoptic/pipeline.h"
 
@@ -254,7 +255,7 @@ Result<std::string> bench_clip(const fs::path& folder, const std::string& engine
   DUO_TRY_ASSIGN(setup.frames.max_disparity, disparities_for_people(clip.rig));
   DUO_TRY_ASSIGN(const nlohmann::json table, clip_table(clip, repeat));
   say_clip(table, say);
-  return table.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);  // a folder's name may be no UTF-8
+  return json_text(table, -1);
 }
 
 }  // namespace duo

@@ -5,6 +5,7 @@
 
 #include "bench/bench_lines.h"
 #include "bench/choices.h"
+#include "core/json_text.h"
 #include "duoptic/devices.h"
 #include "duoptic/engine.h"
 #include "duoptic/tracker.h"
@@ -172,7 +173,7 @@ Result<std::string> bench_device(const SyntheticPair& input, const std::string& 
       out["ours"].push_back(bench_json(run));
       say_run(run, say);
     }
-  return out.dump();
+  return json_text(out, -1);
 }
 
 }  // namespace duo

@@ -7,6 +7,7 @@
 
 #include "bench/bench_lines.h"
 #include "bench/choices.h"
+#include "core/json_text.h"
 #include "duoptic/engine.h"
 #include "duoptic/peers.h"
 
@@ -176,7 +177,7 @@ void say_table(const Table& table, const SayLine& say) {
 Result<std::string> bench_frames(const SyntheticPair& input, const FramesBench& what, const SayLine& say) {
   DUO_TRY_ASSIGN(const Table table, measure_frames(input, what));
   say_table(table, say);
-  return bench_json(table).dump();
+  return json_text(bench_json(table), -1);
 }
 
 }  // namespace duo

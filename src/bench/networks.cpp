@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "bench/bench_lines.h"
+#include "core/json_text.h"
 #include "duoptic/detector.h"
 #include "duoptic/network.h"
 
@@ -98,7 +99,7 @@ Result<std::string> bench_networks(const std::string& engine, int repeat, const 
         threads == 1 ? "" : "one thread", "wall ms", "CPU ms", "ratio");
     for (const char* name : kNetworks) {
       const std::filesystem::path path = models_folder() / (std::string(name) + ".net");
-      if (!std::filesystem::exists(path)) continue;
+      if (std::error_code error; !std::filesystem::exists(path, error)) continue;
       DUO_TRY_ASSIGN(const Timed times, measure_network(path, engine, repeat, threads));
       nlohmann::json row = {
           {"name", name}, {"threads", threads}, {"wall_ms", times.ours.wall_ms}, {"cpu_ms", times.ours.cpu_ms}};
@@ -119,7 +120,7 @@ Result<std::string> bench_networks(const std::string& engine, int repeat, const 
     }
   }
   if (out.empty()) say("networks: none in {}\n", models_folder().string());
-  return out.dump();
+  return json_text(out, -1);
 }
 
 }  // namespace duo

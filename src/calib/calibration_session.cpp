@@ -22,6 +22,11 @@ CalibrationSession::CalibrationSession(CalibrationSessionSetup setup, std::uniqu
 
 Result<std::unique_ptr<CalibrationSession>> CalibrationSession::start(CalibrationSessionSetup setup,
                                                                       std::unique_ptr<PairSource> pairs, const Board& board) {
+  if (!setup.on_news) setup.on_news = [] {};
+  if (!setup.open)
+    setup.open = [name = setup.left_name] {
+      return Error{ErrorCode::kUnsupported, fmt::format("cannot look for another board: {} cannot be read again", name)};
+    };
   std::unique_ptr<CalibrationSession> out(new CalibrationSession(std::move(setup), std::move(pairs), board));
   DUO_TRY_ASSIGN(out->thread_,
                  Worker::start("look for the board", [c = out.get()](const std::stop_token& stop) { return c->run(stop); }));

@@ -64,5 +64,16 @@ TEST(CalibrationSession, LooksToTheEndAndSaysWhatIsMissing) {
   EXPECT_EQ(s.board().columns, 7);
 }
 
+TEST(CalibrationSession, WithNothingToOpenAgainItSaysSo) {
+  auto session = CalibrationSession::start({.left_name = "left.avi", .right_name = "right.avi", .open = {}, .on_news = {}},
+                                           std::make_unique<GrayPairs>(), {.columns = 8, .rows = 6, .square_m = 0.03});
+  ASSERT_TRUE(session) << session.error().what;
+  (*session)->choose({.columns = 7, .rows = 5, .square_m = 0.03});
+  for (int i = 0; i < 10'000 && (*session)->status().problem.find("left.avi cannot be read again") == std::string::npos; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_NE((*session)->status().problem.find("left.avi cannot be read again"), std::string::npos);
+  EXPECT_EQ((*session)->board().columns, 8);
+}
+
 }  // namespace
 }  // namespace duo

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/rig_formats.h"
+#include "core/json_text.h"
 
 namespace duo {
 namespace {
@@ -146,7 +147,7 @@ std::string json_from_rig(const Rig& rig) {
   json["left"]["name"] = rig.left_name;
   json["right"]["name"] = rig.right_name;
   if (rig.uncertainty) json["uncertainty"] = json_from_uncertainty(*rig.uncertainty);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json) + "\n";
 }
 
 }  // namespace duo

@@ -310,6 +310,8 @@ TEST(LightScene, IsReadAsItWasWritten) {
   EXPECT_EQ(scene->max_disparity, 16);
   EXPECT_EQ(scene->pair.left.pixels.at(3, 4), (Rgb8{9, 8, 7}));
   for (int x = 0; x < 40; ++x) EXPECT_FLOAT_EQ(scene->truth_px.at(5, x), truth.disparity_px.at(5, x)) << x;
+  std::filesystem::create_symlink("mask_nonocc.png", folder / "desk/mask_nonocc.png");  // nobody can follow it
+  EXPECT_TRUE(load_scene(folder / "desk").has_value());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "core/json_text.h"
 #include "duoptic/structured_light.h"
 #include "evaluation/json_file.h"
 
@@ -74,7 +75,7 @@ std::string json_from_light_code(const LightCode& code) {
                                       {"version", 1},
                                       {"screen", {code.screen.width, code.screen.height}},
                                       {"period_px", code.period_px}};
-  return out.dump(2) + "\n";
+  return json_text(out) + "\n";
 }
 
 }  // namespace duo

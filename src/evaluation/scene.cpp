@@ -149,14 +149,16 @@ Result<std::vector<fs::path>> find_scenes(const std::vector<fs::path>& paths) {
 Result<StereoScene> load_scene(const fs::path& folder) {
   DUO_TRY_ASSIGN(const Meta meta, load_meta(folder / "meta.json"));
   StereoScene scene;
-  scene.name = fs::weakly_canonical(folder).filename().string();
+  std::error_code error;
+  const fs::path whole = fs::weakly_canonical(folder, error);
+  scene.name = (error ? folder : whole).filename().string();
   scene.max_disparity = meta.max_disparity;
   DUO_TRY_ASSIGN(scene.pair.left, load_picture(folder / "left.png", {}));
   const Size size = scene.pair.left.pixels.size();
   DUO_TRY_ASSIGN(scene.pair.right, load_picture(folder / "right.png", size));
   DUO_TRY_ASSIGN(scene.truth_px, load_truth(folder / "disp_left.png", size, meta.scale));
   scene.regions = regions_of_truth(scene.truth_px, meta.border_px);
-  if (fs::exists(folder / "mask_nonocc.png") && fs::exists(folder / "mask_disc.png")) {
+  if (fs::exists(folder / "mask_nonocc.png", error) && fs::exists(folder / "mask_disc.png", error)) {
     DUO_TRY_ASSIGN(scene.regions.nonocc, load_mask(folder / "mask_nonocc.png", scene.regions.all, 255));
     DUO_TRY_ASSIGN(scene.regions.disc, load_mask(folder / "mask_disc.png", scene.regions.all, 255));
   }

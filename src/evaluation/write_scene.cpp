@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
+#include "core/json_text.h"
 #include "duoptic/output_set.h"
 #include "duoptic/paint.h"
 #include "duoptic/sink.h"
@@ -30,7 +31,7 @@ Result<void> write_scene(const LightTruth& truth, const std::filesystem::path& f
   DUO_TRY(write_png(truth.pair.right.pixels, out / "right.png"));
   DUO_TRY(write_png(scaled, out / "disp_left.png"));
   DUO_TRY(write_png(draw_disparity(d_q4, truth.rectified ? &*truth.rectified : nullptr), out / "disparity.png"));
-  DUO_TRY(write_file(out / "meta.json", meta.dump(2) + "\n"));
+  DUO_TRY(write_file(out / "meta.json", json_text(meta) + "\n"));
   // Masks of another scene would not fit this one.
   return out.publish({"mask_nonocc.png", "mask_disc.png"});
 }

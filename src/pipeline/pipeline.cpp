@@ -282,6 +282,12 @@ Result<void> Pipeline::add_sink(std::string name, std::unique_ptr<Sink> sink) {
   return {};
 }
 
+std::vector<std::string> Pipeline::sink_names() const {
+  std::vector<std::string> names;
+  for (const State::NamedSink& sink : state_->sinks) names.push_back(sink.name);
+  return names;
+}
+
 bool Pipeline::has_sink(std::string_view name) const {
   return std::any_of(state_->sinks.begin(), state_->sinks.end(), [&](const auto& sink) { return sink.name == name; });
 }

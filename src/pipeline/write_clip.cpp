@@ -16,6 +16,7 @@
 #include "calib/opencv_rectified.h"
 #include "calib/rectification.h"
 #include "core/file.h"
+#include "core/json_text.h"
 #include "duoptic/sink.h"
 #include "duoptic/synthetic.h"
 #include "sinks/clip/avi.h"
@@ -70,7 +71,7 @@ class Staging {
   Result<void> publish() {
     const std::string name = folder_.filename();
     const int in = parent_.get();
-    if (!fs::exists(path_in(parent_, name))) {
+    if (std::error_code error; !fs::exists(path_in(parent_, name), error) && !error) {
       if (::renameat(in, staged_.c_str(), in, name.c_str()) != 0) return cannot_write(folder_, std::strerror(errno));
       staged_.clear();
       return {};
@@ -210,7 +211,7 @@ Result<void> write_into(SyntheticClip& clip, const Staging& out, const std::func
   DUO_TRY(left.finish());
   DUO_TRY(right.finish());
   const Json truth = {{"meta", meta_of(setup, clip.rig(), out.name(), std::move(events))}, {"frames", std::move(frames)}};
-  return write_file(out / "truth.json", truth.dump() + "\n");
+  return write_file(out / "truth.json", json_text(truth, -1) + "\n");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/json_text.h"
 #include "duoptic/rig_fit.h"
 #include "duoptic/rig_health.h"
 
@@ -13,10 +14,6 @@ nlohmann::json report_json(const Rig& rig);
 nlohmann::json report_json(const SceneHealth& health);
 nlohmann::json report_json(const std::optional<RigFit>& fit);
 
-/// Names of files may be no UTF-8.
-inline std::string json_text(const nlohmann::json& json) {
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 template <class T>
 nlohmann::json or_null(const std::optional<T>& value) {
   return value ? nlohmann::json(*value) : nlohmann::json();

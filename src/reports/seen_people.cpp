@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/json_text.h"
 #include "duoptic/reports.h"
 
 namespace duo {
@@ -37,7 +38,7 @@ nlohmann::ordered_json people_json(const SeenPerson& person) {
 std::string json_of(std::span<const SeenPerson> people) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const SeenPerson& person : people) all.push_back(people_json(person));
-  return nlohmann::ordered_json{{"people", all}}.dump();
+  return json_text(nlohmann::ordered_json{{"people", all}}, -1);
 }
 
 }  // namespace duo

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
+#include "core/json_text.h"
 #include "duoptic/paint.h"
 
 namespace duo {
@@ -70,7 +71,7 @@ std::string camera_json(const Rectified& r, bool metric, double disparity_sigma_
                                       {"picture", kPictureFile},
                                       {"depth", kDepthFile},
                                       {"disparity", kDisparityFile}};
-  return out.dump(2) + "\n";
+  return json_text(out) + "\n";
 }
 
 }  // namespace duo

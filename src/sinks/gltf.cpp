@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/file.h"
+#include "core/json_text.h"
 #include "duoptic/sink.h"
 #include "sinks/motion_tracks.h"
 
@@ -87,7 +88,7 @@ class GltfScene {
                                    {"skins", skins_},
                                    {"animations", {{{"name", "people"}, {"channels", channels_}, {"samplers", samplers_}}}}};
     numbers_.put_into(gltf);
-    std::string json = gltf.dump();
+    std::string json = json_text(gltf, -1);
     json.resize((json.size() + 3) / 4 * 4, ' ');
     const std::string& numbers = numbers_.bytes();  // floats: whole words
     std::string out = "glTF";

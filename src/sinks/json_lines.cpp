@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/file.h"
+#include "core/json_text.h"
 #include "duoptic/sink.h"
 #include "duoptic/stdout.h"
 #include "sinks/text_values.h"
@@ -15,9 +16,8 @@ namespace {
 
 constexpr int kVersion = 2;
 
-/// Quoted; bytes that are no UTF-8 (names of files may be anything) become U+FFFD.
 std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_text(nlohmann::json(text), -1);
 }
 
 /// From a live picture's capture to now.

@@ -118,9 +118,10 @@ TEST_F(Cameras, WrongSizesAndNamesAreRefused) {
 }
 
 TEST_F(Cameras, CtrlCEndsDepthAndWhatHasNotBegun) {
-  const Ended depth =
-      run_live("depth camera:0 camera:2 --rig rig.json --matcher pyramid --every 5 -o d", "wait_for 'ls d/frame_*/depth.png'");
+  const Ended depth = run_live("depth camera:0 camera:2 --rig rig.json --matcher pyramid --every 5 --far 0.2 -o d",
+                               "wait_for 'ls d/frame_*/depth.png'");
   EXPECT_EQ(depth.exit, 0) << depth.err;
+  EXPECT_NE(depth.err.find("lies farther than --far 0.2"), std::string::npos) << depth.err;
   const Ended track = run_live(kTrack + std::string("--rig rig.json --at-frame 9999 -o never.jsonl"),
                                "wait_for 'grep -q locked err.txt'");  // said after a second of pictures
   EXPECT_EQ(track.exit, 4) << track.err;

@@ -245,6 +245,12 @@ TEST_F(Track, BadOutputs) {
   EXPECT_FALSE(fs::exists(at("never.jsonl")));
   // A quota of 4 blocks of 512 bytes: neither file fits.
   expect_failure(track, kOutput, "out.", "ulimit -f 4;");
+  // One does, and is said to be there.
+  const Ended half = run(track + "-o large.jsonl --csv small.csv --quiet", "ulimit -f 12;");
+  EXPECT_EQ(half.exit, kOutput) << half.err;
+  EXPECT_NE(half.err.find("; 12 frames are in small.csv\n"), std::string::npos) << half.err;
+  EXPECT_FALSE(fs::exists(at("large.jsonl")));
+  EXPECT_TRUE(fs::exists(at("small.csv")));
   EXPECT_EQ(run(track + ">/dev/full 2>stderr.txt; exit $?").exit, kOutput);
 }
 
