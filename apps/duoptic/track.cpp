@@ -117,11 +117,11 @@ Result<void> complete_outputs(Pipeline& pipeline, std::size_t frames, Result<voi
                                                frames == 1 ? "is" : "are", fmt::join(files, ", "))};
 }
 
-/// A run that fails is worth what it has. A rig that was refused leaves nothing.
+/// A run that fails is worth the `frames` that it has. A rig that was refused leaves nothing, nor does what fails at once.
 Error failed_after(Pipeline& pipeline, std::size_t frames, const Error& error, const Options& options) {
   const auto& fit = pipeline.rig_fit();
   const bool refused = options.check == RigCheck::kStrict && fit && !fit->what.empty();
-  if (frames > 0 && !refused) return complete_outputs(pipeline, frames, error).error();
+  if (frames > 1 && !refused) return complete_outputs(pipeline, frames, error).error();
   static_cast<void>(pipeline.flush_sinks());  // the first error counts
   return error;
 }
@@ -139,7 +139,7 @@ Result<Summary> track_all(Pipeline& pipeline, Events& events, std::span<const Se
   SkewWatch skew(pipeline.header().rectified.baseline_m);
   while (true) {
     if (const auto written = pipeline.write(); !written)
-      return failed_after(pipeline, summary.frames, written.error(), options);
+      return failed_after(pipeline, summary.frames + 1, written.error(), options);
     const TrackedFrame frame = pipeline.tracked();
     if (summary.frames++ < Summary::kTimes) {
       summary.engine_ms.push_back(pipeline.times().engine_ms);

@@ -103,6 +103,8 @@ TEST(FilePairs, UnlikeRatesTakeTheNearest) {
     }
     EXPECT_EQ(read.end, Next::kEnd);
   }
+  write_gray(dir / "short.mkv", ticks(0, 30, 2), {.unit = {1, 60}});  // 15 pictures, 10 of which have a partner
+  EXPECT_NE(read_pairs(dir / "right.mkv", dir / "short.mkv").warning.find("short.mkv ends after 15 pictures"), std::string::npos);
 }
 
 TEST(FilePairs, InterlacedPicturesAreSaid) {

@@ -32,7 +32,8 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/video.cpp)
 duoptic_test(sources/files ${PROJECT_SOURCE_DIR}/src/sources/files_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/file_pairs_test.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/picture_bytes_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/board_pictures_test.cpp
-  ${PROJECT_SOURCE_DIR}/src/sources/open_input_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/source_choice_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/rising_times_test.cpp)
+  ${PROJECT_SOURCE_DIR}/src/sources/open_input_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/source_choice_test.cpp ${PROJECT_SOURCE_DIR}/src/sources/rising_times_test.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/two_views_test.cpp)
 foreach(file camera camera_search clock_model controls decode device modes system_calls)
   target_sources(duoptic PRIVATE ${PROJECT_SOURCE_DIR}/src/sources/camera/${file}.cpp)
 endforeach()

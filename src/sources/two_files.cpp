@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -36,14 +37,16 @@ class TwoFiles : public FilePairs {
   Source& left() const { return *views_.sources[0]; }
   Source& right() const { return *views_.sources[1]; }
   void note(std::string text) { notes_.push_back(std::move(text)); }
-  /// What is to be said where the files end.
-  Next end(Next left, Next right, std::uint64_t pairs) {
+  /// What is to be said where the files end. `pictures`: that each of them gave.
+  Next end(Next left, Next right, std::array<std::int64_t, 2> pictures) {
     if (ended_) return *ended_;
     ended_ = left == Next::kCut || right == Next::kCut ? Next::kCut : Next::kEnd;
     if (left == Next::kCut || right == Next::kCut) {
-      note(fmt::format("{} is cut short or damaged after {} whole pictures", views_.names[left == Next::kCut ? 0 : 1], pairs));
+      const std::size_t cut = left == Next::kCut ? 0 : 1;
+      note(fmt::format("{} is cut short or damaged after {} whole pictures", views_.names[cut], pictures[cut]));
     } else if (left != right) {
-      note(fmt::format("{} ends after {} pictures, the other file goes on", views_.names[left == Next::kEnd ? 0 : 1], pairs));
+      const std::size_t ended = left == Next::kEnd ? 0 : 1;
+      note(fmt::format("{} ends after {} pictures, the other file goes on", views_.names[ended], pictures[ended]));
     }
     return *ended_;
   }
@@ -79,7 +82,7 @@ class PairsByNumber final : public TwoFiles {
       DUO_TRY_ASSIGN((left_behind ? left_next : right_next), left_behind ? left().next(into.left) : right().next(into.right));
     }
     into.sequence = given_;
-    if (left_next != Next::kNew || right_next != Next::kNew) return end(left_next, right_next, given_);
+    if (left_next != Next::kNew || right_next != Next::kNew) return end(left_next, right_next, {static_cast<std::int64_t>(given_), static_cast<std::int64_t>(given_)});
     ++given_;
     return Next::kNew;
   }
@@ -194,7 +197,7 @@ class PairsByTime final : public TwoFiles {
     if (alone[0] + alone[1] > 0)
       note(fmt::format("without a partner at its time, and left out: {} of {} left pictures, {} of {} right ones", alone[0],
                        pairing_.put_so_far(CameraSide::kLeft), alone[1], pairing_.put_so_far(CameraSide::kRight)));
-    return end(ends[0], ends[1], given_);
+    return end(ends[0], ends[1], {pairing_.put_so_far(CameraSide::kLeft), pairing_.put_so_far(CameraSide::kRight)});
   }
 
   static constexpr std::size_t kAhead = 4;

@@ -105,7 +105,7 @@ class VideoFile final : public FileSource {
   bool mending_ = false;                                  // so it was, and then it begins again
   bool to_key_ = false;                                   // packets are passed over up to one that begins anew
   bool last_damaged_ = false, last_lacks_bytes_ = false;  // of packets
-  bool read_failed_ = false;
+  bool read_failed_ = false, at_end_ = false;
   bool pending_ = false;  // frame_ holds a picture that next() has not given yet
 };
 
@@ -200,9 +200,10 @@ TimeNs VideoFile::end_ns() const {
 
 std::string VideoFile::warning() const {
   std::string all;
-  if (left_out_ > 0)
-    all = fmt::format("{} picture{} of {} {} damaged: left out", left_out_, left_out_ == 1 ? "" : "s", name_,
-                      left_out_ == 1 ? "is" : "are");
+  const bool last_is_cut = at_end_ && last_damaged_ && end_of_file() == Decoded::kCut;  // which is said elsewhere
+  if (const std::int64_t damaged = left_out_ - (last_is_cut ? 1 : 0); damaged > 0)
+    all = fmt::format("{} picture{} of {} {} damaged: left out", damaged, damaged == 1 ? "" : "s", name_,
+                      damaged == 1 ? "is" : "are");
   const auto add = [&](const std::string& text) { all += (all.empty() || text.empty() ? "" : "; ") + text; };
   add(times_.warning(name_));
   if (interlaced_)
@@ -297,7 +298,8 @@ void VideoFile::leave_out() {
 /// Gives the decoder the next packet, or the end.
 void VideoFile::feed() {
   const int read = av_read_frame(container_.get(), packet_.get());
-  if (read < 0) {
+  at_end_ = read < 0;
+  if (at_end_) {
     fail(read);
     read_failed_ = read != AVERROR_EOF;
     drained_ = true;
