@@ -130,7 +130,7 @@ TEST(Engine, WindowsHaveTheWholePicturesValues) {
 
 TEST(Engine, AllocatesNothingAfterTheFirstFrame) {
   SyntheticSetup synthetic;
-  synthetic.size = {320, 240};
+  synthetic.size = {160, 120};
   const SyntheticPair scene = render_synthetic(synthetic, 2);
   for (const Choice& choice : kChoices) {
     const auto engine = prepared("simd", 2, raw_setup(scene, choice));
@@ -148,7 +148,7 @@ TEST(Engine, AllocatesNothingAfterTheFirstFrame) {
 // again.
 TEST(Engine, AFrameBelongsToWhoHoldsIt) {
   SyntheticSetup synthetic;
-  synthetic.size = {160, 120};
+  synthetic.size = {96, 72};
   const SyntheticPair scene = render_synthetic(synthetic, 2);
   for (const char* name : {"ref", "simd"}) {
     auto engine = prepared(name, 1, raw_setup(scene, kChoices[0]));

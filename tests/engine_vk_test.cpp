@@ -17,10 +17,12 @@ namespace {
 
 using test::calls, test::low_texture, test::must, test::OwnDevice, test::thread_ns, test::watch;
 
-SyntheticPair room(int seed = 2) {
-  SyntheticSetup synthetic;
-  synthetic.size = {96, 72};
-  return render_synthetic(synthetic, seed);
+/// Rendered once for all tests.
+const SyntheticPair& room(std::uint32_t seed = 2) {
+  static std::map<std::uint32_t, SyntheticPair> rooms;
+  const auto [at, is_new] = rooms.try_emplace(seed);
+  if (is_new) at->second = render_synthetic({.size = {96, 72}, .seed = seed}, 2);
+  return at->second;
 }
 
 duo::Setup setup_for(const SyntheticPair& scene) {
@@ -63,6 +65,14 @@ std::unique_ptr<Engine> prepared(std::unique_ptr<Engine> engine, const duo::Setu
   return engine;
 }
 
+/// What the reference makes of a room, in the setup of room(); made once for all tests.
+const Frame& wanted(std::uint32_t seed = 2) {
+  static std::map<std::uint32_t, std::shared_ptr<const Frame>> frames;
+  auto& frame = frames[seed];
+  if (frame == nullptr) frame = run(*prepared(make_ref_engine(), setup_for(room())), room(seed).pair);
+  return *frame;
+}
+
 struct Case {
   const char* name;
   void (*change)(duo::Setup&);
@@ -83,7 +93,7 @@ const Case kCases[] = {
 };
 
 TEST(VulkanEngine, AgreesWithTheReference) {
-  const SyntheticPair scene = room(), other = room(5);
+  const SyntheticPair&scene = room(), &other = room(5);
   for (const Case& each : kCases) {
     duo::Setup setup = setup_for(scene);
     each.change(setup);
@@ -98,19 +108,19 @@ TEST(VulkanEngine, AgreesWithTheReference) {
 }
 
 TEST(VulkanEngine, KeepsPairsInFlightInOrder) {
-  const SyntheticPair scenes[] = {room(), room(5), room(7)};
-  const duo::Setup setup = setup_for(scenes[0]);
+  const SyntheticPair* const scenes[] = {&room(), &room(5), &room(7)};
+  const duo::Setup setup = setup_for(*scenes[0]);
   OwnDevice device;
-  const auto reference = prepared(make_ref_engine(), setup), vulkan = prepared(device.engine(), setup);
+  const auto vulkan = prepared(device.engine(), setup);
   ASSERT_EQ(vulkan->in_flight(), 2);
-  vulkan->submit(scenes[0].pair);
-  vulkan->submit(scenes[1].pair);
+  vulkan->submit(scenes[0]->pair);
+  vulkan->submit(scenes[1]->pair);
   const std::shared_ptr<const Frame> first = vulkan->collect();
-  vulkan->submit(scenes[2].pair);
+  vulkan->submit(scenes[2]->pair);
   const std::shared_ptr<const Frame> second = vulkan->collect();
-  expect_same_frame(*run(*reference, scenes[0].pair), *first, "first, after the second was made");
-  expect_same_frame(*run(*reference, scenes[1].pair), *second, "second");
-  expect_same_frame(*run(*reference, scenes[2].pair), *vulkan->collect(), "third");
+  expect_same_frame(wanted(), *first, "first, after the second was made");
+  expect_same_frame(wanted(5), *second, "second");
+  expect_same_frame(wanted(7), *vulkan->collect(), "third");
 }
 
 // What a stream knows of its pictures stays on the device from pair to pair, two in flight, and is forgotten by prepare().
@@ -155,24 +165,24 @@ TEST(VulkanEngine, TakesTheCodingNoiseOfEachPair) {
 
 // Windows belong to the pair submitted after them, also while another one is in flight.
 TEST(VulkanEngine, CutsTheWindowsOfEachPair) {
-  const SyntheticPair scenes[] = {room(), room(5)};
-  const duo::Setup setup = setup_for(scenes[0]);
+  const SyntheticPair* const scenes[] = {&room(), &room(5)};
+  const duo::Setup setup = setup_for(*scenes[0]);
   OwnDevice device;
   const auto reference = prepared(make_ref_engine(), setup), vulkan = prepared(device.engine(), setup);
   const Window window[] = {{20, 10, 30, 20}};
   vulkan->look_at(window);
-  vulkan->submit(scenes[0].pair);
+  vulkan->submit(scenes[0]->pair);
   vulkan->look_at({});
-  vulkan->submit(scenes[1].pair);
+  vulkan->submit(scenes[1]->pair);
   reference->look_at(window);
-  expect_same_frame(*run(*reference, scenes[0].pair), *vulkan->collect(), "in a window");
+  expect_same_frame(*run(*reference, scenes[0]->pair), *vulkan->collect(), "in a window");
   reference->look_at({});
-  expect_same_frame(*run(*reference, scenes[1].pair), *vulkan->collect(), "whole");
+  expect_same_frame(*run(*reference, scenes[1]->pair), *vulkan->collect(), "whole");
 }
 
 // Also the frame that is under way on the device.
 TEST(VulkanEngine, TheCpuLooksAroundPeople) {
-  const SyntheticPair scene = room();
+  const SyntheticPair& scene = room();
   duo::Setup setup = setup_for(scene);
   setup.matcher = "sgm", setup.preset = "default";
   const Focus part{{20, 10, 40, 30}, 4, 20};
@@ -197,7 +207,7 @@ TEST(VulkanEngine, TheCpuLooksAroundPeople) {
 
 // What stays on the device is there for the two last frames; whoever uses an older one, or one whose engine is gone, is told.
 TEST(VulkanEngine, FramesOnTheDeviceAreThereOrSayThatTheyAreNot) {
-  const SyntheticPair scene = room();
+  const SyntheticPair& scene = room();
   duo::Setup setup = setup_for(scene);
   setup.wants = {.views = false, .disparity = false, .on_device = true};
   OwnDevice device;
@@ -225,7 +235,7 @@ TEST(VulkanEngine, FramesOnTheDeviceAreThereOrSayThatTheyAreNot) {
 }
 
 TEST(VulkanEngine, SendsOnlyWhatIsWanted) {
-  const SyntheticPair scene = room();
+  const SyntheticPair& scene = room();
   duo::Setup setup = setup_for(scene);
   setup.wants = {.views = false, .disparity = false};
   OwnDevice device;
@@ -234,22 +244,20 @@ TEST(VulkanEngine, SendsOnlyWhatIsWanted) {
   EXPECT_TRUE(none->left.empty() && none->right.empty() && none->left_inside.empty() && none->disparity.d_q4.empty());
   setup.wants.disparity = true;
   ASSERT_TRUE(vulkan->prepare(setup));
-  const auto reference = prepared(make_ref_engine(), setup);
   const std::shared_ptr<const Frame> some = run(*vulkan, scene.pair);
   EXPECT_TRUE(some->left.empty());
-  test::expect_same<std::uint16_t>(run(*reference, scene.pair)->disparity.d_q4, some->disparity.d_q4, "disparity alone");
+  test::expect_same<std::uint16_t>(wanted().disparity.d_q4, some->disparity.d_q4, "disparity alone");
 }
 
 TEST(VulkanEngine, RefusesWhatCannotWorkAndStaysAsItWas) {
-  const SyntheticPair scene = room();
+  const SyntheticPair& scene = room();
   duo::Setup setup = setup_for(scene);
   OwnDevice device;
   const auto vulkan = prepared(device.engine(), setup);
   duo::Setup wrong = setup;
   wrong.max_disparity = 0;
   EXPECT_FALSE(vulkan->prepare(wrong));
-  const auto reference = prepared(make_ref_engine(), setup);
-  expect_same_frame(*run(*reference, scene.pair), *run(*vulkan, scene.pair), "after a refused setup");
+  expect_same_frame(wanted(), *run(*vulkan, scene.pair), "after a refused setup");
 }
 
 TEST(VulkanEngine, LeavesTheCpuFree) {
@@ -282,17 +290,15 @@ TEST(VulkanEngine, LeavesTheCpuFree) {
 }
 
 void expect_cpu_goes_on(void (*injure)(), const char* how) {
-  const SyntheticPair scenes[] = {room(), room(5)};
-  const duo::Setup setup = setup_for(scenes[0]);
+  const SyntheticPair* const scenes[] = {&room(), &room(5)};
+  const duo::Setup setup = setup_for(*scenes[0]);
   OwnDevice device;
   watch(device.calls());
   injure();
   const auto vulkan = prepared(device.engine(), setup);
-  const std::unique_ptr<Engine> references[] = {prepared(make_ref_engine(), setup), prepared(make_ref_engine(), setup)};
   std::string events;
-  const std::shared_ptr<const Frame> wanted[] = {run(*references[0], scenes[0].pair), run(*references[1], scenes[1].pair)};
   for (int i = 0; i < 6; ++i) {
-    expect_same_frame(*wanted[i % 2], *run(*vulkan, scenes[i % 2].pair), std::string(how) + ", frame " + std::to_string(i));
+    expect_same_frame(wanted(i % 2 == 0 ? 2 : 5), *run(*vulkan, scenes[i % 2]->pair), std::string(how) + ", frame " + std::to_string(i));
     events += vulkan->take_event();
   }
   EXPECT_NE(events.find("the CPU goes on"), std::string::npos) << how << ": " << events;
@@ -311,49 +317,49 @@ TEST(VulkanEngine, CpuGoesOnWithoutDeviceMemory) {
 
 // What one setup is too large for, another may not be; and who computes is told as it is.
 TEST(VulkanEngine, TriesTheDeviceAgainAtTheNextSetup) {
-  const SyntheticPair scene = room();
+  const SyntheticPair& scene = room();
   const duo::Setup setup = setup_for(scene);
   OwnDevice device;
   watch(device.calls());
   calls.allocations_left = 0;
-  const auto vulkan = prepared(device.engine(), setup), reference = prepared(make_ref_engine(), setup);
+  const auto vulkan = prepared(device.engine(), setup);
   EXPECT_NE(vulkan->take_event().find("the CPU goes on"), std::string::npos);
   EXPECT_STREQ(vulkan->name(), "simd");
   EXPECT_EQ(vulkan->device(), "");
-  expect_same_frame(*run(*reference, scene.pair), *run(*vulkan, scene.pair), "on the CPU");
+  expect_same_frame(wanted(), *run(*vulkan, scene.pair), "on the CPU");
   calls.allocations_left = 1 << 30;
   ASSERT_TRUE(vulkan->prepare(setup));
   EXPECT_EQ(vulkan->take_event(), "");
   EXPECT_STREQ(vulkan->name(), "vulkan");
   EXPECT_FALSE(vulkan->device().empty());
-  expect_same_frame(*run(*reference, scene.pair), *run(*vulkan, scene.pair), "on the device again");
+  expect_same_frame(wanted(), *run(*vulkan, scene.pair), "on the device again");
 }
 
 TEST(VulkanEngine, PairsInFlightSurviveTheLoss) {
-  const SyntheticPair scenes[] = {room(), room(5)};
-  const duo::Setup setup = setup_for(scenes[0]);
+  const SyntheticPair* const scenes[] = {&room(), &room(5)};
+  const duo::Setup setup = setup_for(*scenes[0]);
   OwnDevice device;
   watch(device.calls());
-  const auto vulkan = prepared(device.engine(), setup), reference = prepared(make_ref_engine(), setup);
+  const auto vulkan = prepared(device.engine(), setup);
   calls.fail_wait_at = calls.waits;
-  vulkan->submit(scenes[0].pair);
-  vulkan->submit(scenes[1].pair);
-  expect_same_frame(*run(*reference, scenes[0].pair), *vulkan->collect(), "the pair it was lost on");
-  expect_same_frame(*run(*reference, scenes[1].pair), *vulkan->collect(), "the pair behind");
+  vulkan->submit(scenes[0]->pair);
+  vulkan->submit(scenes[1]->pair);
+  expect_same_frame(wanted(), *vulkan->collect(), "the pair it was lost on");
+  expect_same_frame(wanted(5), *vulkan->collect(), "the pair behind");
 }
 
 // Nothing that the device may still write to is freed: validation would speak, and so would the software driver.
 TEST(VulkanEngine, CpuGoesOnWhenTheDeviceHangs) {
-  const SyntheticPair scenes[] = {room(), room(5)};
-  const duo::Setup setup = setup_for(scenes[0]);
+  const SyntheticPair* const scenes[] = {&room(), &room(5)};
+  const duo::Setup setup = setup_for(*scenes[0]);
   OwnDevice device;
   watch(device.calls());
-  const auto vulkan = prepared(device.engine(), setup), reference = prepared(make_ref_engine(), setup);
+  const auto vulkan = prepared(device.engine(), setup);
   calls.hang_at = calls.waits;
-  vulkan->submit(scenes[0].pair);
-  vulkan->submit(scenes[1].pair);
-  expect_same_frame(*run(*reference, scenes[0].pair), *vulkan->collect(), "the pair it hung on");
-  expect_same_frame(*run(*reference, scenes[1].pair), *vulkan->collect(), "the pair behind");
+  vulkan->submit(scenes[0]->pair);
+  vulkan->submit(scenes[1]->pair);
+  expect_same_frame(wanted(), *vulkan->collect(), "the pair it hung on");
+  expect_same_frame(wanted(5), *vulkan->collect(), "the pair behind");
   EXPECT_EQ(vulkan->device(), "");
 }
 

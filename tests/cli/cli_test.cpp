@@ -30,8 +30,7 @@ using test::kUsage;
 class Cli : public ::testing::Test {
  protected:
   void SetUp() override {
-    const SyntheticSetup setup{.size = {160, 120}};
-    const SyntheticPair raw = render_synthetic(setup, 2);
+    static const SyntheticPair raw = render_synthetic({.size = {160, 120}}, 2);
     ASSERT_TRUE(write_png(raw.pair.left.pixels, at("left.png")));
     ASSERT_TRUE(write_png(raw.pair.right.pixels, at("right.png")));
     ASSERT_TRUE(save_rig(raw.rig, at("rig.json")));
