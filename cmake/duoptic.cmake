@@ -43,13 +43,13 @@ if(DUO_TESTS)
   target_precompile_headers(duoptic_test_main PRIVATE ${PROJECT_SOURCE_DIR}/tests/agree.h)
 endif()
 
-# In a unity build a dozen test files compile as one: what they include is most of their compile time.
+# In a unity build two dozen test files compile as one: what they include is most of their compile time.
 function(duoptic_test_program target)
   if(NOT TARGET ${target})
     add_executable(${target})
     target_link_libraries(${target} PRIVATE duoptic_test_main)
     target_precompile_headers(${target} REUSE_FROM duoptic_test_main)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 12)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 24)
   endif()
 endfunction()
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -132,11 +133,12 @@ Image<Rgb8> dark_copy(const Image<Rgb8>& picture) {
   return out;
 }
 
-/// Two rooms of different rigs, rendered once for all tests.
+/// Rooms of different rigs, rendered once for all tests.
 const SyntheticPair& fit_room(std::uint32_t seed) {
-  static const SyntheticPair rooms[] = {render_synthetic({.size = kRoomSize, .seed = 1}, 2),
-                                        render_synthetic({.size = kRoomSize, .seed = 2}, 2)};
-  return rooms[seed - 1];
+  static std::map<std::uint32_t, SyntheticPair> rooms;
+  const auto [at, is_new] = rooms.try_emplace(seed);
+  if (is_new) at->second = render_synthetic({.size = kRoomSize, .seed = seed}, 2);
+  return at->second;
 }
 
 PairList pairs_of(const Image<Rgb8>& left, const Image<Rgb8>& right, PictureChange of_left = as_it_is,

@@ -42,6 +42,12 @@ Image<Rgb8> dimmed(const Image<Rgb8>& picture, double noise, std::mt19937& rando
   return out;
 }
 
+/// It, rectified.
+const SyntheticPair& ideal_of_judged_room() {
+  static const SyntheticPair room = render_synthetic({.seed = 3, .ideal = true}, 2);
+  return room;
+}
+
 /// As RigWatch asks: the first pair, and where it leaves a doubt all three.
 RigFit by_few_points(const std::optional<Rig>& rig, const std::vector<PairPointer>& pairs) {
   RigFitting fitting(rig, pairs[0]->left.pixels.size(), 1, SceneSearch::kQuick);
@@ -163,7 +169,7 @@ Image<Rgb8> with_thing(const Image<Rgb8>& picture, int at_x, int at_y) {
 
 /// Of two like things in the right photo the lower one looks exactly as the left photo's does, the other, on its row, nearly.
 TEST(RigFitting, WhatStandsThereTwiceHasNotMoved) {
-  const SyntheticPair ideal = render_synthetic({.seed = 3, .ideal = true}, 2);
+  const SyntheticPair& ideal = ideal_of_judged_room();
   Image<Rgb8> twice = with_thing(with_thing(ideal.pair.right.pixels, 280, 330), 280, 180);
   std::mt19937 random(4);
   for (int y = 180; y < 300; ++y)
@@ -179,7 +185,7 @@ TEST(RigFitting, WhatStandsThereTwiceHasNotMoved) {
 
 /// A picture on the wall hangs `down` pixels lower in the right photo.
 TEST(RigFitting, WhatMovedBetweenTwoPhotosIsTold) {
-  const SyntheticPair ideal = render_synthetic({.seed = 3, .ideal = true}, 2);
+  const SyntheticPair& ideal = ideal_of_judged_room();
   const auto fit_of = [&](int down, bool still, bool with_rig) {
     const PairPointer pair =
         pair_of(with_thing(ideal.pair.left.pixels, 300, 180), with_thing(ideal.pair.right.pixels, 280, 180 + down));

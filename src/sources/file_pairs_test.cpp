@@ -34,7 +34,7 @@ int shown_in(const Picture& picture) {
   long least = 1L << 60;
   for (const auto& [t, truth] : truths) {
     long sum = 0;
-    for (int y = 0; y < kSize.height; ++y)
+    for (int y = 0; y < kSize.height && sum < least; ++y)
       for (int x = 0; x < kSize.width; ++x)
         sum += std::abs(picture.pixels.at(y, x).g - truth->data[0][y * truth->linesize[0] + x]);
     if (sum < least) least = sum, best = t;

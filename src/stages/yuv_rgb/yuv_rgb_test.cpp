@@ -7,8 +7,8 @@ namespace {
 
 constexpr YuvWeights kBt601{11485, -2819, -5850, 14516};
 
-struct Planes {
-  Planes(Size size, bool half_rows) : y(size), u({size.width / 2, half_rows ? size.height / 2 : size.height}), v(u.size()) {}
+struct YuvPicture {
+  YuvPicture(Size size, bool half_rows) : y(size), u({size.width / 2, half_rows ? size.height / 2 : size.height}), v(u.size()) {}
   void fill(std::mt19937& rng) {
     for (Image<std::uint8_t>* plane : {&y, &u, &v}) test::fill<std::uint8_t>(*plane, test::Fill::kRandom, rng);
   }
@@ -21,7 +21,7 @@ View<const std::uint8_t> bytes(const Image<Rgb8>& picture) {
 }
 
 TEST(YuvRgb, HandWorked) {
-  Planes gray({16, 16}, true);
+  YuvPicture gray({16, 16}, true);
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 16; ++x) gray.y.at(y, x) = static_cast<std::uint8_t>(16 * y + x);
   for (int y = 0; y < 8; ++y)
@@ -54,7 +54,7 @@ TEST(YuvRgb, SimdAgrees) {
   std::mt19937 rng(3);
   for (const Size size : {Size{16, 16}, Size{18, 20}, Size{62, 16}, Size{64, 18}, Size{66, 16}, Size{130, 22}})
     for (const bool half_rows : {true, false}) {
-      Planes planes(size, half_rows);
+      YuvPicture planes(size, half_rows);
       planes.fill(rng);
       Image<Rgb8> want(size), got(size);
       ref::yuv_rgb(planes.planes(), kBt601, want);
