@@ -1,6 +1,6 @@
 # Explicit names, no glob: what is not listed is not built.
 set(dir ${PROJECT_SOURCE_DIR}/src/calib)
-target_sources(duoptic PRIVATE ${dir}/align_match.cpp ${dir}/judge_scene.cpp ${dir}/moved_points.cpp ${dir}/rig_fit.cpp ${dir}/lens_left_over.cpp ${dir}/normal_equations.cpp ${dir}/opencv_rectified.cpp ${dir}/rectification.cpp ${dir}/rig.cpp
+target_sources(duoptic PRIVATE ${dir}/align_match.cpp ${dir}/judge_scene.cpp ${dir}/moved_points.cpp ${dir}/postures.cpp ${dir}/rig_fit.cpp ${dir}/lens_left_over.cpp ${dir}/normal_equations.cpp ${dir}/opencv_rectified.cpp ${dir}/rectification.cpp ${dir}/rig.cpp
   ${dir}/rig_check.cpp ${dir}/rig_doubts.cpp ${dir}/rig_files.cpp ${dir}/rig_health.cpp ${dir}/rig_json.cpp
   ${dir}/rig_kalibr.cpp ${dir}/rig_lines.cpp ${dir}/rig_opencv.cpp ${dir}/rig_ros.cpp ${dir}/rig_size.cpp
   ${dir}/rig_two_texts.cpp ${dir}/rig_yaml.cpp ${dir}/row_offsets.cpp ${dir}/scene_matches.cpp ${dir}/scene_patches.cpp

@@ -144,6 +144,19 @@ TEST(RigFitting, FewPointsTellWhyPicturesDoNotAgree) {
   EXPECT_EQ(by_few_points(room.rig, dark).what, "");
 }
 
+/// What looks alike by chance in a mirrored picture is the same in pair after pair, and as many as a few real points.
+TEST(RigFitting, WhatLooksAlikeByChanceIsNoRoom) {
+  const SyntheticPair room = render_synthetic({.size = {480, 360}, .seed = 4}, 2);
+  const auto [w, h] = room.pair.left.pixels.size();
+  Image<Rgb8> mirrored(room.pair.left.pixels.size());
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) mirrored.at(y, x) = room.pair.left.pixels.at(y, w - 1 - x);
+  const std::vector<PairPointer> pairs(3, pair_of(mirrored, room.pair.right.pixels));
+  RigFitting fitting(room.rig, {w, h}, 1);
+  ASSERT_FALSE(fitting.by_first(pairs[0]));
+  EXPECT_NE(fitting.by_all(std::span(pairs).subspan(1), nullptr).what.find("one picture is mirrored"), std::string::npos);
+}
+
 /// What is said of pan and rows is of one pose: where one camera turned around its centre, its rows fit once it is turned back.
 TEST(RigFitting, PanAndWhatRowsKeepAreOfOnePose) {
   const SyntheticPair& room = judged_room();

@@ -9,7 +9,7 @@ target_sources(duoptic PRIVATE
   ${PROJECT_SOURCE_DIR}/src/sources/open_source.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/arrival_clock.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/container_end.cpp
-  ${PROJECT_SOURCE_DIR}/src/sources/ffv1_check.cpp
+  ${PROJECT_SOURCE_DIR}/src/sources/packet_check.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/wide_values.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/gst_process.cpp
   ${PROJECT_SOURCE_DIR}/src/sources/http_bytes.cpp

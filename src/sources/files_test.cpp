@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 #include <vector>
 
 #include "duoptic/source.h"
+#include "sources/packet_check.h"
 #include "tests/write_media.h"
 
 namespace duo {
@@ -170,6 +172,23 @@ TEST(Videos, CutGivesItsWholePicturesAndSaysSo) {
     else
       EXPECT_GE(cuts_seen, 20u);
   }
+}
+
+TEST(Videos, AHoleOfZerosIsDamageWhateverADecoderMakesOfIt) {
+  std::vector<std::uint8_t> bytes(1000, 7);
+  AVPacket packet{};
+  packet.data = bytes.data();
+  packet.size = static_cast<int>(bytes.size());
+  for (const int begin : {0, 1, 255, 256, 700, 744}) {
+    std::fill(bytes.begin(), bytes.end(), std::uint8_t{7});
+    std::fill_n(bytes.begin() + begin, 255, std::uint8_t{0});
+    EXPECT_FALSE(has_hole(packet, AV_CODEC_ID_HEVC)) << begin;
+    bytes[static_cast<std::size_t>(begin) + 255] = 0;
+    for (const AVCodecID codec : {AV_CODEC_ID_HEVC, AV_CODEC_ID_VP9}) EXPECT_TRUE(has_hole(packet, codec)) << begin;
+    for (const AVCodecID codec : {AV_CODEC_ID_RAWVIDEO, AV_CODEC_ID_FFV1}) EXPECT_FALSE(has_hole(packet, codec)) << begin;
+  }
+  packet.size = 0;
+  EXPECT_FALSE(has_hole(packet, AV_CODEC_ID_HEVC));
 }
 
 TEST(Files, WhatCannotBeUsedIsOneClearLine) {

@@ -13,7 +13,7 @@
 #include "core/capture_mark.h"
 #include "core/file.h"
 #include "sources/container_end.h"
-#include "sources/ffv1_check.h"
+#include "sources/packet_check.h"
 #include "sources/file_source.h"
 #include "sources/libav.h"
 #include "sources/orientation.h"
@@ -313,7 +313,7 @@ void VideoFile::feed() {
   const bool passed = to_key_ && (packet_->flags & AV_PKT_FLAG_KEY) == 0;
   const bool checks = decoder_->codec_id == AV_CODEC_ID_FFV1 && ffv1_checks(*packet_);
   has_checksums_ |= checks;
-  if (passed || last_lacks_bytes_ || (has_checksums_ && !checks)) {
+  if (passed || last_lacks_bytes_ || (has_checksums_ && !checks) || has_hole(*packet_, decoder_->codec_id)) {
     av_packet_unref(packet_.get());
     return passed ? static_cast<void>(++left_out_) : leave_out();
   }
