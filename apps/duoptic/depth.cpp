@@ -122,7 +122,8 @@ Result<Summary> process(Pipeline& pipeline, const Options& options, const CLI::A
   FrameFiles files = files_of(options);
   files.cloud.metric = pipeline.header().metric;
   DUO_TRY_ASSIGN(FrameFolder out, FrameFolder::open(options.folder, std::move(files), !options.outputs.empty(),
-                                                    pipeline.rectified(), pipeline.still(), pipeline.header().frame_s));
+                                                    pipeline.rectified(), pipeline.still(),
+                                                    pipeline.header().frame_s * static_cast<double>(options.every)));
   const Range range = parse_range(options.range.empty() ? ":" : options.range);
   if (!options.range.empty() && (pipeline.live() || pipeline.still()))
     return Error{ErrorCode::kBadInput,

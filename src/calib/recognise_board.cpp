@@ -105,6 +105,11 @@ std::optional<Board> recognise_board(const cv::Mat& left, const cv::Mat& right, 
       a->rows = b->rows = std::max(a->rows, b->rows);
       return works(a, b) ? a : std::nullopt;
     }
+    if (a || b) {  // one may be cut by the border; no chessboard has markers, and to look for one in them takes seconds
+      for (const auto& seen : {a, b})
+        if (works(seen, seen)) return seen;
+      return {};
+    }
     for (const int width : {std::min(kSmall_px, left.cols), left.cols}) {
       const cv::Mat small_left = shrunk(left, width), small_right = shrunk(right, width);
       std::optional<Board> largest;  // now and then a part of the board is taken for all of it

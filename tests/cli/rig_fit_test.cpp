@@ -210,9 +210,12 @@ TEST_F(RigFitTool, OnlyTheOutputsThatAreAskedFor) {
   for (const auto& entry : fs::directory_iterator(at("few"))) names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{"camera.json", "cloud.ply"}));
-  const Ended video = run("depth left.mp4 right.mp4 --rig rig.json --outputs depth-video -o video --json");
+  const Ended video = run("depth left.mp4 right.mp4 --rig rig.json --outputs depth-video --every 3 -o video --json");
   ASSERT_EQ(video.exit, 0) << video.err;
-  EXPECT_EQ(video.json()["frames"], 12);
+  EXPECT_EQ(video.json()["frames"], 4);
+  const auto depth = open_source(at("video/depth.mkv"));
+  ASSERT_TRUE(depth);
+  EXPECT_NEAR((*depth)->frame_s(), 0.3, 0.01);  // one of three, of ten a second
   EXPECT_TRUE(fs::exists(at("video/depth.mkv")) && fs::exists(at("video/camera.json")));
   EXPECT_FALSE(fs::exists(at("video/frame_000000")));
   EXPECT_EQ(run("depth left.png right.png --outputs depth -o none").exit, kInput);
