@@ -98,7 +98,7 @@ void sample(const Pair& pair, const RowOffsets& rows, const std::string& folder,
   setup.rows = rows;
   setup.matcher = matcher;
   setup.max_disparity = 128;
-  const auto engine = std::move(*make_engine("simd", 2));
+  const auto engine = std::move(*make_engine("simd", 1));
   ASSERT_TRUE(engine->prepare(setup));
   engine->submit(pair);
   const std::shared_ptr<const Frame> frame = engine->collect();
@@ -116,7 +116,7 @@ Samples sample_all(const fs::path& persons) {
     if (entry.path().filename().string().ends_with("_left.jpg") && entry.path().string().find("dist_cm") != std::string::npos)
       lefts.push_back(entry.path());
   std::sort(lefts.begin(), lefts.end());
-  const auto detector = make_detector({.threads = 2});
+  const auto detector = make_detector({});
   EXPECT_TRUE(detector) << (detector ? "" : detector.error().what);
   if (!detector) return {};
   PeopleFinder finder(**detector, {});
@@ -129,7 +129,7 @@ Samples sample_all(const fs::path& persons) {
     const auto next = pairs ? (*pairs)->next(pair) : pairs.error();
     EXPECT_TRUE(next && *next == Next::kNew) << left;
     if (!next || *next != Next::kNew) continue;
-    const RowOffsets rows = find_row_offsets(pair, 2);
+    const RowOffsets rows = find_row_offsets(pair, 1);
     EXPECT_TRUE(rows.matter() && rows.lens) << left;
     const auto people = finder.look(pair.left.pixels);
     for (const char* matcher : matchers()) sample(pair, rows, left.parent_path().filename().string(), matcher, people, out);

@@ -75,7 +75,7 @@ bool near(const SeenPerson& person, const Torso& torso) {
 TEST(PersonsLab, EveryTorsoIsFound) {
   const auto folder = test::data_folder() / "sequences/persons_lab_1080p";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no test data";
-  const auto detector = make_detector({.threads = 2});
+  const auto detector = make_detector({});
   ASSERT_TRUE(detector) << detector.error().what;
   PeopleFinder finder(**detector, {});
   int alone = 0, found_alone = 0, groups = 0, found_groups = 0, false_alone = 0, false_in_groups = 0;

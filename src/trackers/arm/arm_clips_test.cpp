@@ -77,7 +77,7 @@ class Clip {
   Result<void> open(const fs::path& folder, const char* matcher) {
     DUO_TRY_ASSIGN(rig, load_rig(folder / "calibration_truth.yml"));
     DUO_TRY_ASSIGN(pairs_, open_pairs(folder / "left.avi", folder / "right.avi"));
-    DUO_TRY_ASSIGN(engine_, make_engine("simd", 2));
+    DUO_TRY_ASSIGN(engine_, make_engine("simd", 1));
     duo::Setup setup;
     setup.size = pairs_->size();
     setup.rig = rig;
