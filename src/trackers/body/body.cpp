@@ -175,6 +175,7 @@ void Body::detect(const FrameView& frame, const SeenBody& seen, const Hands& han
   // From the side hips and head are marked ahead of their centres.
   const double width_m = lengths_[Bone::kShoulders], ahead_m = kAhead * width_m * scene.across.shoulders.z;
   scene.points = points_of(seen, frame.model, frame.picture.size(), px_per_m, width_m, ahead_m, hip_mark_.low_m());
+  scene.lifted = {lifted(seen, true, px_per_m * width_m), lifted(seen, false, px_per_m * width_m)};
   leg_sides_.put_right(scene, frame.ticks());
   for (const JointId id : kFreeJoints)
     if (frame.is_covered(scene.points[id].at_px)) scene.points[id].hide();

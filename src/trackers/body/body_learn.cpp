@@ -46,7 +46,7 @@ void Body::learn(const FrameView& frame, const Scene& scene) {
   if (std::abs(scene.across.shoulders.z) < kFacing) take(kLeftShoulder, kRightShoulder, Bone::kShoulders);
   if (std::abs(scene.across.hips.z) < kFacing) take(kLeftHip, kRightHip, Bone::kHips);
   if (seen(kLeftShoulder) && seen(kRightShoulder) && seen(kLeftHip) && seen(kRightHip)) {
-    const Vec3 shoulders = middle(measured(kLeftShoulder), measured(kRightShoulder)),
+    const Vec3 shoulders = middle(measured(kLeftShoulder), measured(kRightShoulder)) + scene.lift_m(),
                hips = middle(measured(kLeftHip), measured(kRightHip));
     lengths_.learn(Bone::kTrunk, distance(shoulders, hips), 1);
     if (seen(kHead)) {

@@ -164,6 +164,17 @@ TEST(BodyPoints, JointsLieBesideTheMarks) {
   EXPECT_NEAR(points[kLeftKnee].at_px.y, 150 - 1.2, 0.01);
 }
 
+TEST(BodyPoints, AnArmLiftedToItsSideTakesItsShoulderAlong) {
+  SeenBody body = upright({100, 100}, 100);
+  auto& elbow = body.points[static_cast<std::size_t>(BodyPoint::kLeftElbow)];
+  EXPECT_EQ(lifted(body, true, 40), 0);
+  elbow.x_q8 = 256 * 135, elbow.y_q8 = 256 * 80;  // by 0.6 of the 25 px outwards
+  EXPECT_NEAR(lifted(body, true, 40), 0.5, 1e-9);
+  EXPECT_EQ(lifted(body, true, 60), 0);  // 0.4 of them, if the trunk is turned so far that its 60 px show as 40
+  const Points points = points_of(body, BodyModel::kLite, {320, 240}, 100, 0.4, 0, 0);
+  EXPECT_NEAR(points[kLeftShoulder].at_px.y, 60 + 2.12 - 0.6, 0.01);  // half of 0.03 of 0.4 m
+}
+
 TEST(BodyTrunk, SidesAreExchangedWhereTheOtherSidesAreExpected) {
   const SeenBody body = upright({100, 100}, 100), exchanged = with_sides_exchanged(body);
   EXPECT_EQ(exchanged.at(BodyPoint::kLeftHip).x_px(), body.at(BodyPoint::kRightHip).x_px());

@@ -204,9 +204,11 @@ double depth_of_joint_m(JointId id, double width_m, double away) {
 }
 
 double depth_of_joint_m(const Scene& scene, JointId id, double skin_z) {
-  constexpr double kHeadFlat_m = 0.02;  // nearer to its skin from the side
+  constexpr double kLiftedFlat = 0.035;  // of the width: shoulders of lifted arms lie nearer to their skin
+  constexpr double kHeadFlat_m = 0.02;   // nearer to its skin from the side
   const double line = is_hip(id) ? scene.across.hips.z : scene.across.shoulders.z;
   double behind = depth_of_joint_m(id, scene.width_m(), is_left(id) ? line : -line);
+  if (is_shoulder(id)) behind -= kLiftedFlat * scene.width_m() * scene.lifted[is_left(id) ? 0 : 1];
   if (id == JointId::kHead) behind -= kHeadFlat_m * square(line);
   return is_hip(id) || is_shoulder(id) ? behind : behind - DepthView::kThin_px * scene.depth.m_per_px(skin_z);
 }

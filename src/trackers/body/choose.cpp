@@ -48,7 +48,8 @@ void choose_line(const Scene& scene, JointId left, JointId right, Bone bone, Vec
   // Head on, depth tells how the line is turned; from the side the network does.
   const double turned = std::min(std::abs(across.z), 1.0);
   const double line_sigma = width * (0.35 - 0.17 * turned) + 0.3 * scene.depth.m_per_px(scene.trunk_z_m) * kDepthSigma_px;
-  const Vec3 shoulders = middle(out[JointId::kLeftShoulder].p, out[JointId::kRightShoulder].p);  // chosen before the hips
+  // Chosen before the hips.
+  const Vec3 shoulders = middle(out[JointId::kLeftShoulder].p, out[JointId::kRightShoulder].p) + scene.lift_m();
   double best = -1e9;
   for (const Candidate& a : sides[0].get())
     for (const Candidate& b : sides[1].get()) {
@@ -181,7 +182,7 @@ void choose_head(const Scene& scene, Choices& out) {
   Candidates candidates;
   add_surfaces(scene, id, kMostExpected, candidates);
   add_hidden(scene, id, on_ray(scene, id, scene.expected[id].p.z), kMostExpected, candidates);
-  const Vec3 shoulders = middle(out[JointId::kLeftShoulder].p, out[JointId::kRightShoulder].p);
+  const Vec3 shoulders = middle(out[JointId::kLeftShoulder].p, out[JointId::kRightShoulder].p) + scene.lift_m();
   double best = -1e9;
   for (const Candidate& c : candidates.get()) {
     const double score = c.score + length_score(scene, Bone::kNeckHead, shoulders, c.p);

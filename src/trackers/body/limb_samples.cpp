@@ -80,10 +80,11 @@ void sample(const Scene& scene, const Choices& chosen, JointId a, JointId b, con
   const double z_mean = (chosen[a].p.z + chosen[b].p.z) / 2;
   if (length < 0.08 * scene.depth.px_per_m(z_mean)) return;  // it points at the cameras
   const Vec2 normal = {-way.y / length, way.x / length};
-  constexpr double kUpperArm_m = 0.058;  // under the shoulder's muscle
+  constexpr double kUpperArm_m = 0.058, kLiftedArm_m = 0.045;  // under the shoulder's muscle
   const double behind_b = depth_of_joint_m(scene, b, z_mean);
   double behind_a = depth_of_joint_m(scene, a, z_mean);
-  if (is_shoulder(a)) behind_a = std::min(behind_a, kUpperArm_m);
+  const double lifted = scene.lifted[is_left(a) ? 0 : 1];
+  if (is_shoulder(a)) behind_a = std::min(behind_a, kUpperArm_m + lifted * (kLiftedArm_m - kUpperArm_m));
   for (const double share : kShares) {
     if (out.count == out.all.size()) return;
     const double behind = (1 - share) * behind_a + share * behind_b;

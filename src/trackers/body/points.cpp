@@ -57,6 +57,18 @@ double half_side_px(const SeenBody& body) {
 
 }  // namespace
 
+double lifted(const SeenBody& body, bool left, double width_px) {
+  constexpr double kFrom = 0.45, kTo = 0.75;  // of the upper arm's length, outwards in the picture
+  using enum BodyPoint;
+  const Vec2 own = at(body.at(left ? kLeftShoulder : kRightShoulder)),
+             other = at(body.at(left ? kRightShoulder : kLeftShoulder)), elbow = at(body.at(left ? kLeftElbow : kRightElbow));
+  const Vec2 arm = {elbow.x - own.x, elbow.y - own.y}, outwards = {own.x - other.x, own.y - other.y};
+  const double wide = distance(own, other);
+  const double out = (arm.x * outwards.x + arm.y * outwards.y) / std::max(wide * distance(arm, {}), 1.0);
+  const double facing = std::min(wide / std::max(width_px, 1.0), 1.0);
+  return std::clamp((facing * out - kFrom) / (kTo - kFrom), 0.0, 1.0);
+}
+
 Points points_of(const SeenBody& body, BodyModel model, Size picture, double px_per_m, double shoulder_width_m, double ahead_m,
                  double hips_low_m) {
   const Offsets& offsets = model == BodyModel::kLite ? kLiteOffsets : kFullOffsets;
@@ -90,8 +102,11 @@ Points points_of(const SeenBody& body, BodyModel model, Size picture, double px_
   const auto shift = [&](JointId joint, Offset offset, Vec2 outwards) {
     put(joint, moved(out[joint].at_px, offset, outwards), out[joint].visibility);
   };
-  shift(JointId::kLeftShoulder, offsets.shoulder, to_left);
-  shift(JointId::kRightShoulder, offsets.shoulder, to_right);
+  const auto shoulder = [&](bool of_left) {
+    return Offset{offsets.shoulder.down - kLift * lifted(body, of_left, px_per_m * shoulder_width_m), offsets.shoulder.out};
+  };
+  shift(JointId::kLeftShoulder, shoulder(true), to_left);
+  shift(JointId::kRightShoulder, shoulder(false), to_right);
   const double ahead = ahead_m / shoulder_width_m;
   const auto moved_back = [&](Vec2 place) { return Vec2{place.x - ahead * down.y, place.y + ahead * down.x}; };
   for (const auto& [hip, outwards] : {std::pair{JointId::kLeftHip, to_left}, std::pair{JointId::kRightHip, to_right}}) {

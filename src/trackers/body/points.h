@@ -41,6 +41,15 @@ using Points = PerJoint<Point>;
 Points points_of(const SeenBody& body, BodyModel model, Size picture, double px_per_m, double shoulder_width_m, double ahead_m,
                  double hips_low_m);
 
+/// By how much a lifted arm takes its shoulder along, towards the head; the mark stays where it was.
+///
+/// Units   widths of the shoulders
+/// Source  chosen on the shared clips, whose shoulders rise with their arms (docs/measurements.md)
+inline constexpr double kLift = 0.03;
+/// How far an arm is lifted to its side, as it shows in the picture: 0 hanging or forward, 1 by 50 degrees or more.
+/// `width_px`: of the shoulders, head on.
+double lifted(const SeenBody& body, bool left, double width_px);
+
 /// How far the hand's network moved hand and wrist from where the body's network has them.
 ///
 /// Units  px of the picture

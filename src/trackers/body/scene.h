@@ -29,12 +29,15 @@ struct Scene {
   PerJoint<Expected> expected;
   Across across;                        // by the network
   std::array<HandSight, 2> hands = {};  // left, right
+  std::array<double, 2> lifted = {};    // as lifted() has it: left, right
   const Lengths* lengths = nullptr;
   const SurfaceMap* map = nullptr;
   std::span<const Places* const> nearer;  // people before this one, as fitted in this frame
   TrunkAxes trunk;                        // as expected; chosen anew with the shoulders and hips
   double trunk_z_m = 0;
 
+  /// From the shoulders' middle back to where it is while both arms hang.
+  Vec3 lift_m() const { return (0.5 * kLift * width_m() * (lifted[0] + lifted[1])) * trunk.down; }
   double width_m() const { return (*lengths)[Bone::kShoulders]; }
   HandSight sight_of(JointId hand_or_wrist) const { return hands[is_left(hand_or_wrist) ? 0 : 1]; }
   /// How far a wrist or hand is behind where it would lie on the back, m. None where it is not behind the trunk, where its
