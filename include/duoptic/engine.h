@@ -62,6 +62,8 @@ struct Setup {
 struct Focus {
   Window window;  // empty: the whole picture, and all disparities
   int disparity_begin = 0, disparity_end = 0;
+  int row_step =
+      1;  // of the window's rows each row_step-th is matched, by matchers that can; the others follow those beside them
   friend bool operator==(const Focus&, const Focus&) = default;
 };
 

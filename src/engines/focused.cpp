@@ -34,6 +34,7 @@ FocusPart focus_part(const Focus& focus, Size size, int max_disparity, bool few_
   const int end = std::clamp(focus.disparity_end, first + 1, max_disparity);
   out.disparities = rounded_up(end - first, kDisparityStep, max_disparity);
   // What more is searched lies behind: without a disparity of its own the background beside a person takes the person's.
+  out.row_step = std::max(focus.row_step, 1);
   out.first_disparity = std::max(end - out.disparities, 0);
   return out;
 }

@@ -22,6 +22,7 @@ struct FocusPart {
   Window kept;     // what is wanted of it
   Window matched;  // inside the picture; what is seen at its left border may lie outside of it in the right one
   int first_disparity = 0, disparities = 0;
+  int row_step = 1;
 };
 
 /// `focus` not empty inside the picture.
@@ -37,7 +38,7 @@ void keep_part(const FocusPart& part, Frame& frame);
 /// Matchers that can measure a whole pair and then match a part of it, in the same memory or in memory of that size.
 template <class M>
 concept MatchesParts = requires(M& matcher, const GrayPair& pair, const Match& match, StageTimer& timer) {
-  matcher.match_measured(pair, matcher.measure(pair, timer), 1, match, timer);
+  matcher.match_measured(pair, matcher.measure(pair, timer), 1, 1, match, timer);
 };
 template <class M>
 concept MatchesItsSize = requires(M& matcher, const GrayPair& pair, const Match& match, StageTimer& timer) {
@@ -60,7 +61,7 @@ class Focused {
         const Measured measured = matcher.measure(whole, timer);
         const GrayPair pair = part_of(whole, measured.right, part);
         if constexpr (MatchesParts<M>)
-          matcher.match_measured(pair, measured, part.disparities, part_of(frame, part), timer);
+          matcher.match_measured(pair, measured, part.disparities, part.row_step, part_of(frame, part), timer);
         else
           std::get<M>(of_size(part, whole.masked(), make)).match_measured(pair, measured, part_of(frame, part), timer);
         keep_part(part, frame);

@@ -17,7 +17,8 @@ namespace duo {
 
 /// The box around people: each joint where it is and where its velocity takes it in `ahead_s`, and 25 cm around both, half a
 /// body's depth and what a hand that turns back gains in a tenth of a second. Between all disparities: without those of what is
-/// behind or before people, or of what matches nothing, plain walls take theirs. Empty, which is all, where nobody is.
+/// behind or before people, or of what matches nothing, plain walls take theirs. Every second row, where each of the people has 500 rows a metre.
+/// Empty, which is all, where nobody is.
 Focus around(std::span<const Person> people, const Rectified& rectified, double ahead_s);
 
 /// Of files, pair n is matched around the people of frame n - kBehind, whatever the threads; of a live source around those of

@@ -34,6 +34,13 @@ TEST(FocusLine, TheBoxAroundAJoint) {
   EXPECT_EQ(focus.disparity_end, Engine::kMaxDisparity);
 }
 
+TEST(FocusLine, WhoIsLargeInThePictureIsMatchedInEverySecondRow) {
+  const Person near = with_head_at({0, 0, 1}), far = with_head_at({0, 0, 1.01});  // 500 and 495 rows a metre
+  EXPECT_EQ(around({&near, 1}, plain_rig(), 0.1).row_step, 2);
+  EXPECT_EQ(around({&far, 1}, plain_rig(), 0.1).row_step, 1);
+  EXPECT_EQ(around(std::array{near, far}, plain_rig(), 0.1).row_step, 1);
+}
+
 TEST(FocusLine, GoesWhereTheJointWillBe) {
   const Person person = with_head_at({0, 0, 2}, {2, 0, 0});  // in 0.1 s 50 px to the right
   const Focus focus = around({&person, 1}, plain_rig(), 0.1);

@@ -44,6 +44,18 @@ bool is_even(const SgmParams& params, bool denoised);
 /// `columns`: scratch, two rows as wide as the picture.
 void keep_confidence(View<const std::uint16_t> d_q4, int y, View<std::uint16_t> columns, View<std::uint8_t> confidence);
 
+/// Each `step`-th row of a map, from the first one on.
+template <class T>
+View<T> each_row(View<T> map, int step) {
+  return map.empty() ? map : View<T>(map.data(), {map.width(), (map.height() + step - 1) / step}, step * map.stride());
+}
+MatchPlanes each_row(MatchPlanes planes, int step);
+
+/// Row y, which lies between two that were matched, each `step`-th from 0 on: their mean where both lie on one surface, within
+/// a pixel of disparity; else what the one has, holes too, whose gray value is closer, the upper one of equals. Below the last
+/// matched row what that has. A confidence is the smaller one of a mean's, else that of the row taken.
+void fill_between(View<const std::uint8_t> gray, int step, int y, const Match& out);
+
 namespace ref {
 
 class Sgm {
@@ -59,9 +71,11 @@ class Sgm {
   /// `clear`: how the pair is matched where that has been settled; else its stream settles it
   void match(const GrayPair& pair, const Match& out, StageTimer& timer, std::optional<bool> clear = {});
   /// Its first step, and all others, of the pair or of a part of it, which may be smaller and is searched for [0,
-  /// max_disparity), at most as set up: `pair.right` is cut from `measured.right`.
+  /// max_disparity), at most as set up: `pair.right` is cut from `measured.right`. Each `row_step`-th row is matched, as if
+  /// there were no others, but for what rows beside it bring to a pixel's costs.
   Measured measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear = {});
-  void match_measured(const GrayPair& pair, const Measured& measured, int max_disparity, const Match& out, StageTimer& timer);
+  void match_measured(const GrayPair& pair, const Measured& measured, int max_disparity, int row_step, const Match& out,
+                      StageTimer& timer);
   /// Of the last whole pair: what was compared, and whether as clear pictures.
   SemiGlobal compared() const { return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global(even_)}; }
   bool clear() const { return clear_; }
@@ -86,8 +100,8 @@ class Sgm {
   /// The same in `rows`; none in all others. Saves most of what these would take.
   void match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBand rows = {}, std::optional<bool> clear = {});
   Measured measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear = {});
-  void match_measured(const GrayPair& pair, const Measured& measured, int max_disparity, const Match& out, StageTimer& timer,
-                      RowBand rows = {});
+  void match_measured(const GrayPair& pair, const Measured& measured, int max_disparity, int row_step, const Match& out,
+                      StageTimer& timer, RowBand rows = {});
   SemiGlobal compared() const { return {left_.planes(), right_.planes(), max_disparity_, params_.semi_global(even_)}; }
   bool clear() const { return clear_; }
 

@@ -25,7 +25,7 @@ void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, std::
   const Measured measured = measure(pair, timer, clear);
   GrayPair balanced = pair;
   balanced.right = measured.right;
-  match_measured(balanced, measured, max_disparity_, out, timer);
+  match_measured(balanced, measured, max_disparity_, 1, out, timer);
 }
 
 Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear) {
@@ -38,14 +38,16 @@ Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<boo
   return {maps_.balanced, noise_q4, clear_};
 }
 
-void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max_disparity, const Match& out,
+void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max_disparity, int row_step, const Match& wanted,
                          StageTimer& timer) {
   clear_ = measured.clear;
   even_ = is_even(params_, denoised_) && !clear_;
-  const auto of_size = [size = pair.size()](auto& image) { return image.view().crop(0, 0, size); };
+  const Match out{each_row(wanted.d_q4, row_step), each_row(wanted.confidence, row_step)};
+  const auto of_size = [size = out.d_q4.size()](auto& image) { return image.view().crop(0, 0, size); };
   const auto left_winner = of_size(maps_.left_winner), right_winner = of_size(maps_.right_winner);
-  const auto softened = of_size(maps_.softened);
+  const auto softened = maps_.softened.view().crop(0, 0, pair.size());
   const auto fine = of_size(maps_.fine);
+  const auto thin = [row_step](auto map) { return each_row(map, row_step); };
   left_.size = right_.size = pair.size();
   const int noise_q4 = params_.soften != 0 ? measured.noise_q4 : 0;
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
@@ -57,18 +59,18 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max
   };
   planes(pair.left, pair.left_inside, left_);
   planes(pair.right, pair.right_inside, right_);
-  SemiGlobal in = compared();
-  in.max_disparity = max_disparity;
+  const SemiGlobal in{thin(left_.planes()), thin(right_.planes()), max_disparity, params_.semi_global(even_)};
   ref::semi_global(in, {left_winner, right_winner, fine, out.confidence});
   timer.stage("semi_global");
   // What follows the check writes to another image than it reads: the check stays in the one from which it ends in d_q4.
   const bool refine = refines(params_, pair.masked()) && !clear_;
   const View<std::uint16_t> smoothed = refine ? fine : out.d_q4, before = refine ? out.d_q4 : fine,
                             checked = params_.smooth != 0 ? before : smoothed;
-  ref::check_left_right({left_winner, right_winner, pair.left_inside, pair.right_inside, params_.tolerance, params_.reach},
-                        fine, checked);
+  ref::check_left_right(
+      {left_winner, right_winner, thin(pair.left_inside), thin(pair.right_inside), params_.tolerance, params_.reach}, fine,
+      checked);
   timer.stage("check_left_right");
-  ref::remove_speckle(checked, params_.speckle_step_q4, params_.speckle);
+  ref::remove_speckle(checked, params_.speckle_step_q4, params_.speckle / row_step);
   timer.stage("speckle");
   if (params_.smooth != 0) ref::weighted_median({checked, in.left.value[0]}, smoothed);
   timer.stage("weighted_median");
@@ -76,6 +78,8 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max
   timer.stage("lucas_kanade");
   Image<std::uint16_t> columns(out.confidence.empty() ? Size{} : Size{out.d_q4.width(), 2});
   for (int y = 0; y < out.confidence.height(); ++y) keep_confidence(out.d_q4, y, columns, out.confidence);
+  for (int y = 0; y < pair.size().height; ++y)
+    if (y % row_step != 0) fill_between(left_.planes().value[0], row_step, y, wanted);
   timer.stage("keep_confidence");
 }
 

@@ -33,7 +33,7 @@ void Sgm::match(const GrayPair& pair, const Match& out, StageTimer& timer, RowBa
   const Measured measured = measure(pair, timer, clear);
   GrayPair balanced = pair;
   balanced.right = measured.right;
-  match_measured(balanced, measured, max_disparity_, out, timer, rows);
+  match_measured(balanced, measured, max_disparity_, 1, out, timer, rows);
 }
 
 Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<bool> clear) {
@@ -47,27 +47,31 @@ Measured Sgm::measure(const GrayPair& pair, StageTimer& timer, std::optional<boo
   return {maps_.balanced, noise_q4, clear_};
 }
 
-void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max_disparity, const Match& out, StageTimer& timer,
-                         RowBand rows) {
+void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max_disparity, int row_step, const Match& asked,
+                         StageTimer& timer, RowBand rows) {
   clear_ = measured.clear;
   even_ = is_even(params_, denoised_) && !clear_;
-  const auto of_size = [size = pair.size()](auto& image) { return image.view().crop(0, 0, size); };
+  DUO_CHECK(row_step == 1 || rows.all(pair.size().height));
+  const Match out{each_row(asked.d_q4, row_step), each_row(asked.confidence, row_step)};
+  const auto of_size = [size = out.d_q4.size()](auto& image) { return image.view().crop(0, 0, size); };
   const auto left_winner = of_size(maps_.left_winner), right_winner = of_size(maps_.right_winner);
-  const auto softened = of_size(maps_.softened);
+  const auto softened = maps_.softened.view().crop(0, 0, pair.size());
+  const auto thin = [row_step](auto map) { return each_row(map, row_step); };
   const auto fine = of_size(maps_.fine);
   left_.size = right_.size = pair.size();
   const int noise_q4 = params_.soften != 0 ? measured.noise_q4 : 0;
   // What the result depends on: disparities around a confidence; taps of the last step and of the median; islands, which are
   // smaller than `speckle` pixels where they matter; paths from above, and with paths from below the whole picture.
-  const int h = pair.size().height;
+  const int h = out.d_q4.height();
   const RowBand wanted = rows.within(h);
   rows = out.confidence.empty() ? wanted : wanted.grown(kConfidenceReach, h);
   const bool refine = refines(params_, pair.masked()) && !clear_;
   const RowBand smoothed_rows = refine ? rows.grown(LucasKanade::kRows, h) : rows;
   const RowBand checked_rows = params_.smooth != 0 ? smoothed_rows.grown(WeightedMedian::kRadius, h) : smoothed_rows;
-  const RowBand joined = checked_rows.grown(params_.speckle, h);
+  const int island = params_.speckle / row_step;
+  const RowBand joined = checked_rows.grown(island, h);
   const SemiGlobalParams semi_global = params_.semi_global(even_);
-  const int plane_rows = semi_global.upward ? h : joined.end;
+  const int plane_rows = semi_global.upward || row_step > 1 ? pair.size().height : joined.end;
   const auto planes = [&](View<const std::uint8_t> gray, View<const std::uint8_t> inside, PlaneImages& out) {
     if (noise_q4 > 0) simd::bilateral(pool_, gray, bilateral_range(noise_q4), softened);
     timer.stage("bilateral");
@@ -77,18 +81,19 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max
   };
   planes(pair.left, pair.left_inside, left_);
   planes(pair.right, pair.right_inside, right_);
-  const SemiGlobal in{left_.planes(), right_.planes(), max_disparity, semi_global, joined};
+  const SemiGlobal in{thin(left_.planes()), thin(right_.planes()), max_disparity, semi_global, joined};
   simd::semi_global(pool_, in, scratch_, {left_winner, right_winner, fine, out.confidence});
   timer.stage("semi_global");
   // What follows the check writes to another image than it reads: the check stays in the one from which it ends in d_q4.
   const View<std::uint16_t> smoothed = refine ? fine : out.d_q4, before = refine ? out.d_q4 : fine,
                             checked = params_.smooth != 0 ? before : smoothed;
-  simd::check_left_right(pool_,
-                         {joined.of<const std::int16_t>(left_winner), joined.of<const std::int16_t>(right_winner),
-                          joined.of(pair.left_inside), joined.of(pair.right_inside), params_.tolerance, params_.reach},
-                         joined.of<const std::uint16_t>(fine), joined.of(checked));
+  simd::check_left_right(
+      pool_,
+      {joined.of<const std::int16_t>(left_winner), joined.of<const std::int16_t>(right_winner),
+       joined.of(thin(pair.left_inside)), joined.of(thin(pair.right_inside)), params_.tolerance, params_.reach},
+      joined.of<const std::uint16_t>(fine), joined.of(checked));
   timer.stage("check_left_right");
-  simd::remove_speckle(pool_, joined.of(checked), params_.speckle_step_q4, params_.speckle, speckle_scratch_);
+  simd::remove_speckle(pool_, joined.of(checked), params_.speckle_step_q4, island, speckle_scratch_);
   timer.stage("speckle");
   if (params_.smooth != 0) simd::weighted_median(pool_, {checked, in.left.value[0], smoothed_rows}, smooth_scratch_, smoothed);
   timer.stage("weighted_median");
@@ -106,6 +111,12 @@ void Sgm::match_measured(const GrayPair& pair, const Measured& measured, int max
     if (!out.confidence.empty()) std::fill_n(out.confidence.row(y), out.confidence.width(), std::uint8_t{0});
   }
   timer.stage("keep_confidence");
+  if (row_step == 1) return;
+  pool_.rows(pair.size().height, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y)
+      if (y % row_step != 0) fill_between(left_.planes().value[0], row_step, y, asked);
+  });
+  timer.stage("fill_between");
 }
 
 }  // namespace duo::simd

@@ -1,5 +1,7 @@
 #include "matchers/sgm/sgm.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -58,6 +60,31 @@ void expect_engines_agree(Size size, int max_disparity, int paths, bool masked, 
       }
     }
   });
+}
+
+TEST(Sgm, RowsBetweenThoseThatWereMatched) {
+  constexpr std::uint16_t kNone = Disparity::kNone;
+  // One surface, its limit, two surfaces by gray, a hole that is closer and one that is not, two holes, equal grays.
+  const std::array<std::uint16_t, 8> upper = {160, 160, 160, 160, kNone, kNone, kNone, 160},
+                                     lower = {163, 176, 177, 400, 160, 160, kNone, 400};
+  const std::array<std::uint8_t, 8> gray[3] = {
+      {0, 0, 10, 10, 10, 10, 0, 10}, {0, 0, 20, 90, 20, 90, 0, 20}, {0, 0, 99, 99, 99, 99, 0, 30}};
+  const std::array<std::uint16_t, 8> want = {162, 168, 160, 400, kNone, 160, kNone, 160};
+  const std::array<std::uint8_t, 8> want_sure = {3, 3, 7, 3, 7, 3, 3, 7};
+  Image<std::uint16_t> d({8, 4});
+  Image<std::uint8_t> sure({8, 4}), guide({8, 4});
+  std::ranges::copy(upper, d.row(0));
+  std::ranges::copy(lower, d.row(2));
+  std::fill_n(sure.row(0), 8, std::uint8_t{7});
+  std::fill_n(sure.row(2), 8, std::uint8_t{3});
+  for (int y = 0; y < 3; ++y) std::ranges::copy(gray[y], guide.row(y));
+  for (const int y : {1, 3}) fill_between(guide, 2, y, {d, sure});
+  for (int x = 0; x < 8; ++x) {
+    EXPECT_EQ(d.at(1, x), want[static_cast<std::size_t>(x)]) << x;
+    EXPECT_EQ(sure.at(1, x), want_sure[static_cast<std::size_t>(x)]) << x;
+    EXPECT_EQ(d.at(3, x), lower[static_cast<std::size_t>(x)]) << x;  // nothing was matched below
+    EXPECT_EQ(sure.at(3, x), 3) << x;
+  }
 }
 
 TEST(Sgm, TheLastFractionAndEvenPenaltiesAreOfPicturesThatWereRaw) {
