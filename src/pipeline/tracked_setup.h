@@ -24,8 +24,8 @@ inline void add_wants(const Wants& from, Wants& to) {
   to.on_device |= from.on_device;
 }
 
-/// How deep joints lie under the skin was measured on disparities without the last fraction and with less penalty at gray steps:
-/// trackers get the one and the other where the user names the parameter alone.
+/// How deep joints lie under the skin was measured on disparities without the last fraction and with less penalty at gray
+/// steps: trackers get the one and the other where the user names the parameter alone.
 inline Setup setup_of_tracked(const Setup& wanted) {
   Setup out = wanted;
   const std::pair<std::string, double> measured[] = {{"refine", 0}, {"even", 0}};

@@ -5,8 +5,8 @@
 namespace duo {
 
 SemiGlobalParams SgmParams::semi_global(bool even) const {
-  return {census_truncation,         truncation,  p1, p2, even ? p2 : p2_least, p2_gradient,
-          paths == 5 || paths == 8, paths == 4 || paths == 8};
+  return {census_truncation,       truncation, p1, p2, even ? p2 : p2_least, p2_gradient, paths == 5 || paths == 8,
+          paths == 4 || paths == 8};
 }
 
 Result<SgmParams> sgm_params(std::string_view preset, const Overrides& overrides) {

@@ -16,18 +16,20 @@ namespace duo {
 /// Tap: a pixel of even row and column with a disparity, whose two neighbours in the row are in the picture, as are, in the
 /// right view, the two pixels that its place x - d lies between and one more on either side. e: left value minus the right one
 /// at that place, linear between its pixels. l, r: both views' central differences there, the right view's linear between
-/// pixels, too; g their mean. A tap with |e| >= kMostDifference does not count: it sees something else. A step is one of the four pixels of
-/// rows 2k, 2k + 1 and columns 2j, 2j + 1, over the taps of the rows 2k +- 2 kReach and the columns 2j +- 2 kReach, each at its
-/// own disparity, so that a slant changes nothing: step = -9/4 sum(e g w) / sum(max(l r, 0) w + 1/20), rounded to 1/16 px and held to
+/// pixels, too; g their mean. A tap with |e| >= kMostDifference does not count: it sees something else. A step is one of the
+/// four pixels of rows 2k, 2k + 1 and columns 2j, 2j + 1, over the taps of the rows 2k +- 2 kReach and the columns 2j +- 2
+/// kReach, each at its own disparity, so that a slant changes nothing: step = -9/4 sum(e g w) / sum(max(l r, 0) w + 1/20),
+/// rounded to 1/16 px and held to
 /// +-kMost_q4; the result is held to 0 .. max_disparity - 1. w = 1 / (g^2 + 8): paths flatten where there is little to see, and
 /// there gradients of shading must not be outvoted by a few strong ones, whose disparities are right already. These still hold
-/// the others back, hence 9/4. Noise of the views, which are independent, is in l r only by chance, where g^2 would always be more
-/// by it and steps be shorter the noisier the pictures are. Where there is no gradient nothing changes.
+/// the others back, hence 9/4. Noise of the views, which are independent, is in l r only by chance, where g^2 would always be
+/// more by it and steps be shorter the noisier the pictures are. Where there is no gradient nothing changes.
 ///
 /// Shape    all H x W; dst is not the same memory as d_q4
 /// Units    d_q4 1/16 px, Disparity::kNone = hole, which stays one; e in gray levels, g in those per px
 /// Threads  pairs of rows are independent
-/// Exact    ref, simd and vk agree bit for bit: integers, e in 1/16, g in 1/4, l r in 1/16; what a tap adds is rounded once, see
+/// Exact    ref, simd and vk agree bit for bit: integers, e in 1/16, g in 1/4, l r in 1/16; what a tap adds is rounded once,
+/// see
 ///          lucas_kanade_params.h; sums stay below 2^26
 /// Source   Lucas, Kanade, "An iterative image registration technique with an application to stereo vision", 1981; a step past
 ///          the least sum as in Young, "Iterative methods for solving partial difference equations of elliptic type", 1954

@@ -35,8 +35,8 @@ struct ZigzagPair {
 };
 
 // By hand: 4096 * 64 / (64 * 64 + 128) = 62.06 and 4096 * 8 / 192 = 170.7; 455 * 8192 / 4224 = 882.4, / 192 = 19413.3;
-// 455 * 64 * 64 / 4224 = 441.2, 455 * 64 / 192 = 151.7, and a 20th of 455 is 22.75. Where one view has no gradient the other's is
-// noise, or the views differ: only the 20th is left.
+// 455 * 64 * 64 / 4224 = 441.2, 455 * 64 / 192 = 151.7, and a 20th of 455 is 22.75. Where one view has no gradient the other's
+// is noise, or the views differ: only the 20th is left.
 TEST(LucasKanade, GradientsCountAlmostAlike) {
   EXPECT_EQ(lucas_kanade_pull(0), 0);
   EXPECT_EQ(lucas_kanade_inverse(0), 29120);
@@ -49,9 +49,9 @@ TEST(LucasKanade, GradientsCountAlmostAlike) {
   EXPECT_EQ(lucas_kanade_weight(64 * 64, 882), 441 + 23);
 }
 
-// By hand: column 8, whose taps are the columns 4, 6 .. 12. Going up e is -64, going down 64; g is 64, where the right view turns
-// 8, of the left view alone. So of five taps three have -64 * 62 and 464, two -64 * 171 and 23: in all -33792 and 1438, and
-// (2 * 33792 / 1438 + 1) / 2 = 23 sixteenths, of which 6 are taken: the turns say most.
+// By hand: column 8, whose taps are the columns 4, 6 .. 12. Going up e is -64, going down 64; g is 64, where the right view
+// turns 8, of the left view alone. So of five taps three have -64 * 62 and 464, two -64 * 171 and 23: in all -33792 and 1438,
+// and (2 * 33792 / 1438 + 1) / 2 = 23 sixteenths, of which 6 are taken: the turns say most.
 TEST(LucasKanade, StepsToWhereBothViewsAreAlike) {
   const ZigzagPair pair(2.25, 32);
   const LucasKanade in{pair.left, pair.right, pair.d_q4, 16};

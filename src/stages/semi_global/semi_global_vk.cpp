@@ -76,17 +76,23 @@ Result<SemiGlobal> SemiGlobal::make(const Device& device, int max_disparity, con
 }
 
 void SemiGlobal::record(Recorder& recorder, BufferView<std::uint32_t> left, BufferView<std::uint32_t> right,
-                        const Scratch& scratch, const Match& out, Size size,
-                        const Buffer* even_unless_clear) const {
+                        const Scratch& scratch, const Match& out, Size size, const Buffer* even_unless_clear) const {
   const Size planes{size.width, kPackedPlanes * size.height};
   DUO_CHECK(left.holds(planes) && right.holds(planes) && out.left.holds(size) && out.right.holds(size) && out.fine.holds(size));
   DUO_CHECK(out.margin.absent() || out.margin.holds(size));
   DUO_CHECK(scratch.size_ == size && scratch.words_ == words_for(max_disparity_) &&
             static_cast<int>(scratch.volumes_.size()) == volumes_for(params_));
   const int runs = (size.width + kCostRun - 1) / kCostRun, invocations = runs * scratch.words_;
-  const SemiGlobalCostsPush costs{
-      left.plane, right.plane, size.width, size.height, max_disparity_, scratch.words_, params_.census_truncation,
-      params_.truncation, params_.p2_least, even_unless_clear != nullptr ? params_.p2 : params_.p2_least};
+  const SemiGlobalCostsPush costs{left.plane,
+                                  right.plane,
+                                  size.width,
+                                  size.height,
+                                  max_disparity_,
+                                  scratch.words_,
+                                  params_.census_truncation,
+                                  params_.truncation,
+                                  params_.p2_least,
+                                  even_unless_clear != nullptr ? params_.p2 : params_.p2_least};
   // Every binding needs a buffer; one that is not looked at stands in.
   recorder.dispatch(costs_, costs,
                     {reads(left), reads(right), writes(scratch.costs_),
@@ -112,8 +118,7 @@ void SemiGlobal::record_path(Recorder& recorder, BufferView<std::uint32_t> left,
                              const Buffer& volume, bool adds) const {
   const Size size = scratch.size_;
   const SemiGlobalPathPush push{
-      left.plane, size.width, size.height, scratch.words_, params_.p1, params_.p2, params_.p2_gradient,
-      dx,         dy,         adds};
+      left.plane, size.width, size.height, scratch.words_, params_.p1, params_.p2, params_.p2_gradient, dx, dy, adds};
   recorder.dispatch(path_, push, {reads(scratch.costs_), reads(left), writes(volume)},
                     groups_for_paths(dy == 0 ? size.height : size.width));
 }
@@ -122,8 +127,8 @@ void SemiGlobal::record_winners(Recorder& recorder, BufferView<std::uint32_t> le
                                 const Match& out) const {
   const Size size = scratch.size_;
   const bool wants_margin = !out.margin.absent();
-  const SemiGlobalPush push{left.plane, out.right.plane, size.width,       size.height,         scratch.words_,
-                            params_.p1, params_.p2, params_.p2_gradient, wants_margin};
+  const SemiGlobalPush push{left.plane, out.right.plane, size.width,          size.height, scratch.words_,
+                            params_.p1, params_.p2,      params_.p2_gradient, wants_margin};
   const auto volume = [&](std::size_t i) { return reads(scratch.volumes_[std::min(i, scratch.volumes_.size() - 1)]); };
   recorder.dispatch(winners_, push,
                     {reads(scratch.costs_), reads(left), volume(0), volume(1), volume(2), volume(3), writes(scratch.found_),

@@ -32,8 +32,8 @@ class SemiGlobal {
   };
   /// max_disparity 1 .. 256.
   static Result<SemiGlobal> make(const Device& device, int max_disparity, const SemiGlobalParams& params);
-  /// `left` and `right` hold planes as vk::MatchPlanes packs them. `even_unless_clear`: a word; where it is not above 0 P2 is the
-  /// same at all steps of gray, p2_least = p2. None: P2 as the parameters say.
+  /// `left` and `right` hold planes as vk::MatchPlanes packs them. `even_unless_clear`: a word; where it is not above 0 P2 is
+  /// the same at all steps of gray, p2_least = p2. None: P2 as the parameters say.
   void record(Recorder& recorder, BufferView<std::uint32_t> left, BufferView<std::uint32_t> right, const Scratch& scratch,
               const Match& out, Size size, const Buffer* even_unless_clear = nullptr) const;
 
