@@ -92,47 +92,22 @@ std::optional<double> noise_variance(std::span<const std::uint16_t> steps) {
   return squares / (16384.0 * 16384.0) / 3;
 }
 
-ViewPlaces averaged_places(Pool& pool, const ViewPlaces& view, const LightCode& code) {
-  constexpr int kAround[][2] = {{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}};  // y and x; the other four pixels lie opposite
-  const std::int32_t bent_q8 = code.period_px * 256 / 32;  // half a pixel of a camera that sees two of the projector's in one
-  const Size size = view.x_q8.size();
-  ViewPlaces out{Image<std::int32_t>(size), Image<std::int32_t>(size)};
-  pool.rows(size.height, [&](int begin, int end) {
-    for (int y = begin; y < end; ++y)
-      for (int x = 0; x < size.width; ++x) {
-        out.x_q8.at(y, x) = out.y_q8.at(y, x) = -1;
-        const std::int32_t x_q8 = view.x_q8.at(y, x), y_q8 = view.y_q8.at(y, x);
-        if (x_q8 < 0 || y == 0 || x == 0 || y + 1 == size.height || x + 1 == size.width) continue;
-        std::int32_t x_sum = x_q8, y_sum = y_q8, count = 1;
-        for (const auto& [v, u] : kAround) {
-          const std::int32_t ax = view.x_q8.at(y + v, x + u), bx = view.x_q8.at(y - v, x - u);
-          const std::int32_t ay = view.y_q8.at(y + v, x + u), by = view.y_q8.at(y - v, x - u);
-          if (std::min(ax, bx) < 0 || std::abs(ax + bx - 2 * x_q8) > 2 * bent_q8 || std::abs(ay + by - 2 * y_q8) > 2 * bent_q8)
-            continue;
-          x_sum += ax + bx, y_sum += ay + by, count += 2;
-        }
-        if (count == 1) continue;
-        out.x_q8.at(y, x) = (x_sum + count / 2) / count;
-        out.y_q8.at(y, x) = (y_sum + count / 2) / count;
-      }
-  });
-  return out;
-}
-
-std::optional<RowMatch> find_on_row(const ViewPlaces& other, int y, int x_begin, int x_end, std::int32_t x_q8,
+std::optional<RowMatch> find_on_row(const PlacePlanes& other, int y, int x_begin, int x_end, std::int32_t x_q8,
                                     std::int32_t y_q8, std::int32_t reach_q8) {
-  const std::int32_t *const xs = other.x_q8.row(y), *const ys = other.y_q8.row(y);
+  const std::int32_t *const xs = other.at.x_q8.row(y), *const ys = other.at.y_q8.row(y);
+  const std::int32_t *const x_steps = other.step.x_q8.row(y), *const y_steps = other.step.y_q8.row(y);
   std::optional<RowMatch> best;
   std::int32_t nearest = reach_q8 + 1;
-  for (int x = std::max(x_begin, 0); x + 1 < std::min(x_end, other.x_q8.width()); ++x) {
-    const std::int32_t a = xs[x], b = xs[x + 1];
-    if (x_q8 < std::min(a, b) || x_q8 > std::max(a, b) || std::min(a, b) < 0) continue;
-    if (std::abs(a - b) > reach_q8 || std::abs(ys[x] - ys[x + 1]) > reach_q8) continue;
-    const double share = a == b ? 0.5 : double(x_q8 - a) / double(b - a);
-    const auto row_q8 = static_cast<std::int32_t>(std::lround(ys[x] + share * (ys[x + 1] - ys[x])));
+  for (int x = std::max(x_begin, 0); x < std::min(x_end, other.at.x_q8.width()); ++x) {
+    const std::int32_t apart = x_q8 - xs[x], step = x_steps[x];
+    // Half a pixel to each side, and a twentieth more, so that nothing is lost between two.
+    if (xs[x] < 0 || step == 0 || 20 * std::abs(apart) > 11 * std::abs(step)) continue;
+    if (std::abs(step) > reach_q8 || std::abs(y_steps[x]) > reach_q8) continue;
+    const double share = double(apart) / double(step);
+    const auto row_q8 = static_cast<std::int32_t>(std::lround(ys[x] + share * y_steps[x]));
     if (std::abs(row_q8 - y_q8) >= nearest) continue;
     nearest = std::abs(row_q8 - y_q8);
-    best = RowMatch{x + share, row_q8};
+    best = RowMatch{x, x + share, row_q8};
   }
   return best;
 }
@@ -148,10 +123,10 @@ std::int32_t two_rows_q8(const ViewPlaces& view, int y, int x, std::int32_t reac
 
 }  // namespace
 
-ViewMatch match_views(Pool& pool, const ViewPlaces& left, const ViewPlaces& right, const LightCode& code) {
+ViewMatch match_views(Pool& pool, const PlacePlanes& left, const PlacePlanes& right, const LightCode& code) {
   // Where a pixel of a camera is wider than a quarter of a period the sine cannot be seen.
   const std::int32_t reach_q8 = code.period_px * 256 / 4;
-  const Size size = left.x_q8.size();
+  const Size size = left.at.x_q8.size();
   ViewMatch out{Image<float>(size)};
   struct RowCounts {
     std::int64_t matched = 0, contradicting = 0;
@@ -162,13 +137,13 @@ ViewMatch match_views(Pool& pool, const ViewPlaces& left, const ViewPlaces& righ
     for (int y = begin; y < end; ++y) {
       RowCounts& of_row = counts[static_cast<std::size_t>(y)];
       for (int x = 0; x < size.width; ++x) {
-        const std::int32_t x_q8 = left.x_q8.at(y, x), y_q8 = left.y_q8.at(y, x);
+        const std::int32_t x_q8 = left.at.x_q8.at(y, x), y_q8 = left.at.y_q8.at(y, x);
         if (x_q8 < 0) continue;
         const auto match = find_on_row(right, y, x - LightTruth::kMostDisparity_px, x + 1, x_q8, y_q8, reach_q8);
         if (!match || !(match->x_px < x)) continue;
-        const int at = static_cast<int>(std::lround(match->x_px));
-        const auto back = find_on_row(left, y, at, at + LightTruth::kMostDisparity_px + 1, right.x_q8.at(y, at),
-                                      right.y_q8.at(y, at), reach_q8);
+        const int at = match->column;
+        const auto back = find_on_row(left, y, at, at + LightTruth::kMostDisparity_px + 1, right.at.x_q8.at(y, at),
+                                      right.at.y_q8.at(y, at), reach_q8);
         constexpr double kAgree_px = 1;
         if (!back || std::abs((back->x_px - at) - (x - match->x_px)) > kAgree_px) {
           ++of_row.contradicting;
@@ -176,7 +151,7 @@ ViewMatch match_views(Pool& pool, const ViewPlaces& left, const ViewPlaces& righ
         }
         ++of_row.matched;
         out.disparity_px.at(y, x) = static_cast<float>(x - match->x_px);
-        if (const std::int32_t two_rows = two_rows_q8(left, y, x, reach_q8); two_rows != 0)
+        if (const std::int32_t two_rows = two_rows_q8(left.at, y, x, reach_q8); two_rows != 0)
           of_row.rows_px.push_back(2 * static_cast<float>(y_q8 - match->y_q8) / static_cast<float>(two_rows));
       }
     }

@@ -10,6 +10,8 @@
 
 namespace duo {
 
+struct ResampleMap;
+
 /// Gray code: neighbouring numbers differ in one bit.
 ///
 /// Source  Gray, "Pulse code communication", US patent 2632058, 1953
@@ -59,20 +61,33 @@ struct ViewPlaces {
   Image<std::int32_t> x_q8, y_q8;
 };
 
-/// Places averaged over 3x3 pixels of one surface: always two that lie opposite each other, so that a slant changes nothing.
-/// Where a surface's colour changes within a pixel its place is that of the brighter part; averaged, both views see this alike.
-/// A pixel that agrees with no such two lies on an edge, sees two surfaces, and becomes unknown, as the picture's border does.
-ViewPlaces averaged_places(Pool& pool, const ViewPlaces& view, const LightCode& code);
+/// Places of a view's rectified pixels, and by how much they change from a column to the next.
+///
+/// Units  1/256 px; `at` -1 where it is not known
+struct PlacePlanes {
+  ViewPlaces at, step;
+};
 
-/// Where the row of the other view has the place that a pixel has, between two of its pixels.
+/// Of the windows of 5x5 raw pixels that hold the one nearest to a rectified pixel, the one whose places lie best on planes,
+/// and the nearer the better, gives its places by least squares; where none of them does so, one of 3x3. So a pixel beside an
+/// edge has the place of its own surface. One that sees two surfaces, whose place is that of neither, is in no such window and
+/// becomes unknown. Where a surface's colour changes within a pixel its place is that of the brighter part; averaged, both
+/// views see this alike.
+///
+/// map     from rectified pixels to raw ones; none: they are the same
+/// Source  Nagao, Matsuyama, "Edge preserving smoothing", 1979: the best of several windows around a pixel
+PlacePlanes place_planes(Pool& pool, const ViewPlaces& raw, const ResampleMap* map, const LightCode& code);
+
+/// Where a row of the other view has the place that a pixel has.
 struct RowMatch {
-  double x_px = 0;
+  int column = 0;         // in whose pixel it lies
+  double x_px = 0;        // by this pixel's plane
   std::int32_t y_q8 = 0;  // the projector's row there: that of the pixel, when rows agree
 };
 
-/// Of several the one whose row of the projector is nearest; none farther than `reach_q8` from it. Pixels side by side lie on
-/// one surface when their places are not farther apart than that.
-std::optional<RowMatch> find_on_row(const ViewPlaces& other, int y, int x_begin, int x_end, std::int32_t x_q8,
+/// Of several the one whose row of the projector is nearest; none farther than `reach_q8` from it, and none where a step from
+/// column to column is farther than that.
+std::optional<RowMatch> find_on_row(const PlacePlanes& other, int y, int x_begin, int x_end, std::int32_t x_q8,
                                     std::int32_t y_q8, std::int32_t reach_q8);
 
 struct ViewMatch {
@@ -82,6 +97,6 @@ struct ViewMatch {
 };
 
 /// Each left pixel's match in the right view, where the right view's match of that place leads back to within a pixel.
-ViewMatch match_views(Pool& pool, const ViewPlaces& left, const ViewPlaces& right, const LightCode& code);
+ViewMatch match_views(Pool& pool, const PlacePlanes& left, const PlacePlanes& right, const LightCode& code);
 
 }  // namespace duo

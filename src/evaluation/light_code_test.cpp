@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "duoptic/evaluation.h"
+#include "stages/rectify/rectify.h"
 #include "tests/write_media.h"
 
 namespace duo {
@@ -185,63 +186,110 @@ TEST(LightPlace, NoiseByHand) {
   EXPECT_FALSE(noise_variance(steps).has_value());
 }
 
-ViewPlaces row_of(const std::vector<int>& x_px, const std::vector<int>& y_px) {
-  ViewPlaces out{Image<std::int32_t>({static_cast<int>(x_px.size()), 1}),
-                 Image<std::int32_t>({static_cast<int>(x_px.size()), 1})};
-  for (int x = 0; x < out.x_q8.width(); ++x) {
+TEST(LightPlanes, OnOneSurfaceByHand) {
+  Pool pool(1);
+  ViewPlaces view{Image<std::int32_t>({10, 9}), Image<std::int32_t>({10, 9})};
+  const auto slanted = [](int y, int x) { return 5000 + 400 * x + 50 * y; };
+  const auto seen = [&] { return place_planes(pool, view, nullptr, {{640, 480}, 32}); };
+  const auto reset = [&] {
+    for (int y = 0; y < 9; ++y)
+      for (int x = 0; x < 10; ++x) view.x_q8.at(y, x) = slanted(y, x), view.y_q8.at(y, x) = 300 * y + 256;
+  };
+  reset();
+  view.x_q8.at(4, 4) += 75;  // noise: of 25 pixels a twenty-fifth, in windows that have it in their middle row and column
+  const PlacePlanes noisy = seen();
+  EXPECT_EQ(noisy.at.x_q8.at(4, 4), slanted(4, 4) + 3);
+  EXPECT_EQ(noisy.at.x_q8.at(4, 3), slanted(4, 3) + 3);
+  EXPECT_EQ(noisy.at.x_q8.at(4, 8), slanted(4, 8));
+  EXPECT_EQ(noisy.at.x_q8.at(0, 9), slanted(0, 9));  // a corner's window lies beside it
+  EXPECT_EQ(noisy.at.y_q8.at(3, 3), 300 * 3 + 256);
+  EXPECT_EQ(noisy.step.x_q8.at(0, 9), 400);
+  EXPECT_EQ(noisy.step.y_q8.at(0, 9), 0);
+  // Two surfaces: up to the edge each pixel has the place and the step of its own.
+  reset();
+  for (int y = 0; y < 9; ++y)
+    for (int x = 5; x < 10; ++x) view.x_q8.at(y, x) += 3000;
+  const PlacePlanes edge = seen();
+  for (int y = 0; y < 9; ++y)
+    for (int x = 0; x < 10; ++x) {
+      EXPECT_EQ(edge.at.x_q8.at(y, x), slanted(y, x) + (x < 5 ? 0 : 3000)) << y << " " << x;
+      EXPECT_EQ(edge.step.x_q8.at(y, x), 400) << y << " " << x;
+    }
+  // A pixel between both is of neither. Those beside it go on without it.
+  view.x_q8.at(4, 4) += 1500;
+  const PlacePlanes mixed = seen();
+  EXPECT_EQ(mixed.at.x_q8.at(4, 4), -1);
+  EXPECT_EQ(mixed.at.x_q8.at(4, 3), slanted(4, 3));
+  EXPECT_EQ(mixed.at.x_q8.at(4, 5), slanted(4, 5) + 3000);
+  EXPECT_EQ(mixed.at.x_q8.at(3, 4), slanted(3, 4));
+}
+
+// Rectified pixel (2, x) sees the raw picture at column x / 2 + 1.25 and row 3.5.
+TEST(LightPlanes, OfRectifiedPixelsByHand) {
+  Pool pool(1);
+  ViewPlaces view{Image<std::int32_t>({10, 9}), Image<std::int32_t>({10, 9})};
+  for (int y = 0; y < 9; ++y)
+    for (int x = 0; x < 10; ++x) view.x_q8.at(y, x) = 5000 + 400 * x + 50 * y, view.y_q8.at(y, x) = 300 * y + 20 * x;
+  ResampleMap map{Image<std::uint32_t>({8, 3}), Image<std::uint16_t>({8, 3})};
+  for (int y = 0; y < 3; ++y)
+    for (int x = 0; x < 8; ++x) {
+      const int at_q8 = 128 * x + 320;
+      map.corner.at(y, x) = static_cast<std::uint32_t>(at_q8 >> 8) << 16 | 3;
+      map.fraction_q8.at(y, x) = static_cast<std::uint16_t>((at_q8 & 255) << 8 | 128);
+    }
+  map.corner.at(2, 0) = map.corner.at(1, 4) = map.corner.at(1, 6) = ResampleMap::kOutside;
+  const PlacePlanes got = place_planes(pool, view, &map, {{640, 480}, 32});
+  EXPECT_EQ(got.at.x_q8.at(2, 3), 5000 + 1100 + 175);  // column 2.75
+  EXPECT_EQ(got.at.y_q8.at(2, 3), 1050 + 55);
+  EXPECT_EQ(got.step.x_q8.at(2, 3), 200);
+  EXPECT_EQ(got.step.y_q8.at(2, 3), 10);
+  EXPECT_EQ(got.at.x_q8.at(2, 0), -1);
+  EXPECT_EQ(got.step.x_q8.at(2, 1), 200);  // by the neighbour that is there
+  EXPECT_EQ(got.at.x_q8.at(1, 5), -1);     // none is
+}
+
+/// Places of which each lies on the plane of its own that goes on by `step_px`.
+PlacePlanes row_of(const std::vector<int>& x_px, const std::vector<int>& y_px, int step_px) {
+  const Size size{static_cast<int>(x_px.size()), 1};
+  const auto places = [&] { return ViewPlaces{Image<std::int32_t>(size), Image<std::int32_t>(size)}; };
+  PlacePlanes out{places(), places()};
+  for (int x = 0; x < size.width; ++x) {
     const auto i = static_cast<std::size_t>(x);
-    out.x_q8.at(0, x) = x_px[i] < 0 ? -1 : 256 * x_px[i];
-    out.y_q8.at(0, x) = x_px[i] < 0 ? -1 : 256 * y_px[i];
+    out.at.x_q8.at(0, x) = x_px[i] < 0 ? -1 : 256 * x_px[i];
+    out.at.y_q8.at(0, x) = x_px[i] < 0 ? -1 : 256 * y_px[i];
+    out.step.x_q8.at(0, x) = 256 * step_px;
+    out.step.y_q8.at(0, x) = 64;
   }
   return out;
 }
 
-TEST(LightPlace, AveragedOnOneSurfaceByHand) {
-  Pool pool(1);
-  ViewPlaces view{Image<std::int32_t>({6, 5}), Image<std::int32_t>({6, 5})};
-  const auto slanted = [](int y, int x) { return 5000 + 400 * x + 50 * y; };
-  for (int y = 0; y < 5; ++y)
-    for (int x = 0; x < 6; ++x) view.x_q8.at(y, x) = slanted(y, x), view.y_q8.at(y, x) = 300 * y + 256;
-  view.x_q8.at(2, 2) += 90;  // noise: a ninth of it stays, in its pixel and, by two that lie opposite, in those around
-  const ViewPlaces got = averaged_places(pool, view, {{640, 480}, 32});
-  EXPECT_EQ(got.x_q8.at(2, 2), slanted(2, 2) + 10);
-  EXPECT_EQ(got.x_q8.at(2, 1), slanted(2, 1) + 10);
-  EXPECT_EQ(got.x_q8.at(2, 4), slanted(2, 4));
-  EXPECT_EQ(got.y_q8.at(3, 3), 300 * 3 + 256);
-  EXPECT_EQ(got.x_q8.at(0, 3), -1);
-  EXPECT_EQ(got.x_q8.at(3, 5), -1);
-  // Another surface, as wide as a pixel; those beside it go on without it.
-  view.x_q8.at(2, 2) = 9000;
-  const ViewPlaces edge = averaged_places(pool, view, {{640, 480}, 32});
-  EXPECT_EQ(edge.x_q8.at(2, 2), -1);
-  EXPECT_EQ(edge.x_q8.at(2, 3), slanted(2, 3));
-}
-
 TEST(LightMatch, OnARowByHand) {
-  // Place 105 lies between columns 1 and 2, half-way; again between 5 and 6, where the projector's row is another one.
-  const ViewPlaces row = row_of({100, 104, 106, 110, 98, 104, 106}, {50, 50, 50, 50, 90, 90, 90});
+  // Place 105 lies a quarter of a step behind columns 1 and 5, where the projector's row is another one.
+  const PlacePlanes row = row_of({100, 104, 108, 112, 98, 104, 108}, {50, 50, 50, 50, 90, 90, 90}, 4);
   const auto at = [&](int x_px, int y_px) { return find_on_row(row, 0, 0, 7, 256 * x_px, 256 * y_px, 8 * 256); };
   ASSERT_TRUE(at(105, 50));
-  EXPECT_DOUBLE_EQ(at(105, 50)->x_px, 1.5);
-  EXPECT_DOUBLE_EQ(at(105, 90)->x_px, 5.5);
-  EXPECT_EQ(at(105, 90)->y_q8, 90 * 256);
-  EXPECT_DOUBLE_EQ(at(107, 52)->x_px, 2.25);
+  EXPECT_EQ(at(105, 50)->column, 1);
+  EXPECT_DOUBLE_EQ(at(105, 50)->x_px, 1.25);
+  EXPECT_EQ(at(105, 50)->y_q8, 50 * 256 + 16);
+  EXPECT_DOUBLE_EQ(at(105, 90)->x_px, 5.25);
+  EXPECT_DOUBLE_EQ(at(107, 52)->x_px, 1.75);
+  EXPECT_EQ(at(107, 52)->column, 2);
   EXPECT_FALSE(at(105, 70));  // neither row is near
   EXPECT_FALSE(at(120, 50));
-  // Across a jump of 12 there is no surface, and none beside an unknown pixel.
-  const ViewPlaces gaps = row_of({100, 112, -1, 116, 118}, {50, 50, 50, 50, 50});
-  EXPECT_FALSE(find_on_row(gaps, 0, 0, 5, 256 * 105, 256 * 50, 8 * 256));
-  EXPECT_FALSE(find_on_row(gaps, 0, 0, 5, 256 * 114, 256 * 50, 8 * 256));
-  EXPECT_DOUBLE_EQ(find_on_row(gaps, 0, 0, 5, 256 * 117, 256 * 50, 8 * 256)->x_px, 3.5);
-  EXPECT_FALSE(find_on_row(gaps, 0, 0, 4, 256 * 117, 256 * 50, 8 * 256));
+  // A surface ends half a pixel, and a twentieth, behind its last pixel.
+  EXPECT_DOUBLE_EQ(at(114, 50)->x_px, 3.5);
+  EXPECT_FALSE(at(115, 50));
+  // Steps that are too wide, and pixels without a place.
+  EXPECT_FALSE(find_on_row(row_of({100}, {50}, 9), 0, 0, 1, 256 * 101, 256 * 50, 8 * 256));
+  EXPECT_FALSE(find_on_row(row_of({-1}, {50}, 4), 0, 0, 1, 0, 256 * 50, 80 * 256));
+  EXPECT_FALSE(find_on_row(row, 0, 2, 4, 256 * 105, 256 * 50, 8 * 256));
 }
 
 TEST(LightMatch, BothViewsMustAgree) {
   Pool pool(1);
-  // Left columns 3 .. 6 see what right columns 1 .. 4 see: 2 px. The right view's column 0 claims a place again that left
-  // column 6 has.
-  const ViewPlaces left = row_of({-1, -1, -1, 100, 102, 104, 106}, {0, 0, 0, 50, 50, 50, 50});
-  const ViewPlaces right = row_of({-1, 100, 102, 104, 106, -1, -1}, {0, 50, 50, 50, 50, 0, 0});
+  // Left columns 3 .. 6 see what right columns 1 .. 4 see: 2 px.
+  const PlacePlanes left = row_of({-1, -1, -1, 100, 102, 104, 106}, {0, 0, 0, 50, 50, 50, 50}, 2);
+  const PlacePlanes right = row_of({-1, 100, 102, 104, 106, -1, -1}, {0, 50, 50, 50, 50, 0, 0}, 2);
   const ViewMatch match = match_views(pool, left, right, {{640, 480}, 32});
   const float want[] = {0, 0, 0, 2, 2, 2, 2};
   for (int x = 0; x < 7; ++x) EXPECT_FLOAT_EQ(match.disparity_px.at(0, x), want[x]) << x;
@@ -249,6 +297,14 @@ TEST(LightMatch, BothViewsMustAgree) {
   EXPECT_EQ(match.contradicting, 0);
   // What lies to the right of its left view is nowhere.
   EXPECT_EQ(match_views(pool, right, left, {{640, 480}, 32}).matched, 0);
+  // Left columns 6 and 8 have one place; right column 4 is, by the projector's row, that of column 8.
+  const PlacePlanes twice = row_of({-1, -1, -1, 100, 102, 104, 106, -1, 106}, {0, 0, 0, 50, 50, 50, 50, 0, 51}, 2);
+  const PlacePlanes once = row_of({-1, 100, 102, 104, 106, -1, -1, -1, -1}, {0, 50, 50, 50, 51, 0, 0, 0, 0}, 2);
+  const ViewMatch doubtful = match_views(pool, twice, once, {{640, 480}, 32});
+  EXPECT_EQ(doubtful.disparity_px.at(0, 6), 0);
+  EXPECT_FLOAT_EQ(doubtful.disparity_px.at(0, 8), 4);
+  EXPECT_EQ(doubtful.matched, 4);
+  EXPECT_EQ(doubtful.contradicting, 1);
 }
 
 // A wall 5 px away whose left third is white, and dark corners: what is too bright in one exposure is told by the other.

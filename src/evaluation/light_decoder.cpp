@@ -20,36 +20,6 @@ Image<Rgb8> rectified_picture(Pool& pool, const Image<Rgb8>& raw, const Resample
   return out;
 }
 
-/// Places of the raw picture's pixels carried to the rectified ones: known where all four pixels around are, and lie on one
-/// surface. Places, not brightness: between two surfaces brightness would be a mixture with a phase that neither has.
-ViewPlaces rectified_places(Pool& pool, const ViewPlaces& raw, const ResampleMap& map, const LightCode& code) {
-  const Size size = map.corner.size();
-  const std::int32_t reach_q8 = code.period_px * 256 / 4;
-  ViewPlaces out{Image<std::int32_t>(size), Image<std::int32_t>(size)};
-  pool.rows(size.height, [&](int begin, int end) {
-    for (int y = begin; y < end; ++y)
-      for (int x = 0; x < size.width; ++x) {
-        out.x_q8.at(y, x) = out.y_q8.at(y, x) = -1;
-        const std::uint32_t corner = map.corner.at(y, x);
-        if (corner == ResampleMap::kOutside) continue;
-        const int x0 = static_cast<int>(corner >> 16), y0 = static_cast<int>(corner & 0xFFFF);
-        const int fx = map.fraction_q8.at(y, x) >> 8, fy = map.fraction_q8.at(y, x) & 255;
-        const auto between = [&](const Image<std::int32_t>& of) -> std::int32_t {
-          const std::int32_t a = of.at(y0, x0), b = of.at(y0, x0 + 1), c = of.at(y0 + 1, x0), d = of.at(y0 + 1, x0 + 1);
-          const auto [least, most] = std::minmax({a, b, c, d});
-          if (least < 0 || most - least > 2 * reach_q8) return -1;
-          const std::int64_t above = std::int64_t{a} * (256 - fx) + std::int64_t{b} * fx;
-          const std::int64_t below = std::int64_t{c} * (256 - fx) + std::int64_t{d} * fx;
-          return static_cast<std::int32_t>((above * (256 - fy) + below * fy + 32768) >> 16);
-        };
-        const std::int32_t x_q8 = between(raw.x_q8), y_q8 = between(raw.y_q8);
-        if (x_q8 < 0 || y_q8 < 0) continue;
-        out.x_q8.at(y, x) = x_q8, out.y_q8.at(y, x) = y_q8;
-      }
-  });
-  return out;
-}
-
 LightCounts count_states(View<const std::uint8_t> states) {
   std::array<std::int64_t, 5> counts{};  // by LightState
   for (int y = 0; y < states.height(); ++y)
@@ -111,10 +81,7 @@ struct LightDecoder::State {
     return out;
   }
 
-  ViewPlaces seen(const LitView& view, const ResampleMap* map) const {
-    ViewPlaces places = averaged_places(pool, view.places, code);
-    return map == nullptr ? std::move(places) : rectified_places(pool, places, *map, code);
-  }
+  PlacePlanes seen(const LitView& view, const ResampleMap* map) const { return place_planes(pool, view.places, map, code); }
 
   /// Places, by axis, of a pixel's samples: those of the light come first, then of columns, then of rows.
   template <class F>

@@ -140,8 +140,8 @@ TEST(LightRoom, TruthIsTrue) {
   EXPECT_GT(on_surfaces.pixels, all.pixels * 3 / 4);
   EXPECT_GE(on_surfaces.percent_found(), 95);
   EXPECT_GE(on_surfaces.percent_right(), 99);
-  EXPECT_GE(all.percent_found(), 85);
-  EXPECT_GE(all.percent_right(), 95);
+  EXPECT_GE(all.percent_found(), 92);
+  EXPECT_GE(all.percent_right(), 96.5);
   EXPECT_LT(elsewhere, all.pixels / 50);
   EXPECT_NEAR(truth->rows_px, 0, 0.02);
   EXPECT_GT(truth->left.unlit, truth->left.pixels / 100);
